@@ -1,0 +1,4 @@
+//! The host of `bidir`: it reads scenes, casts rays, and writes images and reports.
+
+pub mod error;
+pub mod scene;

@@ -1,0 +1,423 @@
+//! A scene as it was written down: plain data, in f64 and in the file's own coordinates, before anything is built from it.
+
+use std::sync::Arc;
+
+use bidir_kernel::Spectrum;
+use glam::{DAffine3, DVec2, DVec3};
+
+use crate::error::Place;
+
+/// Everything a scene file says.
+#[derive(Clone, Debug)]
+pub struct Description {
+    /// The camera.
+    pub sensor: Sensor,
+    /// What it exposes.
+    pub film: FilmSettings,
+    /// How far paths go.
+    pub integrator: Integrator,
+    /// Samples per pixel that the scene's sampler asks for.
+    pub samples_per_pixel: u32,
+    /// The scene's seed; 0 unless its sampler says so.
+    pub seed: u64,
+    /// Surfaces, named by their index.
+    pub materials: Vec<Material>,
+    /// Geometry.
+    pub shapes: Vec<Shape>,
+    /// Lights that are not on a shape.
+    pub emitters: Vec<Emitter>,
+}
+
+/// The scene's integrator. Which techniques run is not its to say.
+#[derive(Clone, Debug)]
+pub struct Integrator {
+    /// The `type` as written.
+    pub kind: String,
+    /// The longest path, in segments; `None` is unlimited.
+    pub max_depth: Option<u32>,
+    /// The length at which Russian roulette begins.
+    pub rr_depth: u32,
+    /// Whether the lens sees through emitters.
+    pub hide_emitters: bool,
+}
+
+impl Default for Integrator {
+    fn default() -> Self {
+        Self { kind: "path".into(), max_depth: None, rr_depth: 5, hide_emitters: false }
+    }
+}
+
+/// The camera.
+#[derive(Clone, Debug)]
+pub struct Sensor {
+    /// What kind of camera.
+    pub kind: SensorKind,
+    /// Camera → world: x to the image's left, y up, z into the scene.
+    pub to_world: DAffine3,
+    /// Where the optical axis meets the film, as a fraction of the image relative to its middle (Mitsuba's `principal_point_offset_x`, `_y`).
+    pub principal_point_offset: DVec2,
+    /// Acts only where the scene says so.
+    pub near_clip: Option<f64>,
+    /// Acts only where the scene says so.
+    pub far_clip: Option<f64>,
+    /// Where it stands in the file.
+    pub place: Place,
+}
+
+/// Kinds of camera.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum SensorKind {
+    /// A pinhole, or a thin lens if the radius is above 0.
+    Perspective {
+        /// Horizontal field of view in degrees, already turned to the x axis from whatever axis was given.
+        fov_x: f64,
+        /// In world units.
+        aperture_radius: f64,
+        /// Distance of the plane in focus.
+        focus_distance: f64,
+    },
+    /// Parallel rays; the image's width spans −1 … 1 before `to_world`.
+    Orthographic,
+}
+
+/// The film.
+#[derive(Clone, Debug)]
+pub struct FilmSettings {
+    /// The whole image, in pixels.
+    pub width: u32,
+    /// The whole image, in pixels.
+    pub height: u32,
+    /// What is rendered of it.
+    pub crop: Crop,
+    /// The reconstruction filter.
+    pub filter: Filter,
+}
+
+/// A window of the image, in pixels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Crop {
+    /// Left edge.
+    pub x: u32,
+    /// Upper edge.
+    pub y: u32,
+    /// At least 1.
+    pub width: u32,
+    /// At least 1.
+    pub height: u32,
+}
+
+/// Reconstruction filters, as Mitsuba defines them; radii in pixels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Filter {
+    /// 1 within half a pixel.
+    Box,
+    /// Falls linearly to 0 at the radius.
+    Tent {
+        /// Where it ends.
+        radius: f64,
+    },
+    /// max(0, exp(−x²/2σ²) − exp(−r²/2σ²)) with r = 4σ.
+    Gaussian {
+        /// σ, in pixels.
+        stddev: f64,
+    },
+}
+
+/// A material's name: its index in [`Description::materials`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct MaterialId(pub u32);
+
+/// A colour that may vary over a surface.
+#[derive(Clone, Debug)]
+pub enum Texture {
+    /// The same everywhere.
+    Constant(Spectrum),
+    /// An image.
+    Bitmap(Arc<Bitmap>),
+    /// Two colours in squares half a unit wide.
+    Checkerboard {
+        /// Where both halves agree.
+        color0: Spectrum,
+        /// Elsewhere.
+        color1: Spectrum,
+        /// Applied to uv first.
+        to_uv: UvTransform,
+    },
+}
+
+/// An image as a texture. Linear values; v = 0 is the image's lower edge, as Mitsuba has it.
+#[derive(Clone, Debug)]
+pub struct Bitmap {
+    /// In texels.
+    pub width: u32,
+    /// In texels.
+    pub height: u32,
+    /// Rows from the image's top, linear.
+    pub texels: Vec<Spectrum>,
+    /// How it is read between texels.
+    pub nearest: bool,
+    /// How it goes on outside 0 … 1.
+    pub wrap: Wrap,
+    /// Applied to uv first.
+    pub to_uv: UvTransform,
+}
+
+/// How a bitmap goes on outside 0 … 1.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Wrap {
+    /// Again and again.
+    Repeat,
+    /// Back and forth.
+    Mirror,
+    /// Its edge for ever.
+    Clamp,
+}
+
+/// An affine map of uv: rows (a, b, c) with u' = a u + b v + c.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct UvTransform(pub [[f32; 3]; 2]);
+
+impl UvTransform {
+    /// Changes nothing.
+    pub const IDENTITY: Self = Self([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]);
+}
+
+/// Microfacet distributions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Distribution {
+    /// Trowbridge & Reitz.
+    Ggx,
+    /// Beckmann & Spizzichino.
+    Beckmann,
+}
+
+/// What a surface does to light: Mitsuba's plugins, their parameters resolved.
+#[derive(Clone, Debug)]
+pub enum Material {
+    /// Lambertian.
+    Diffuse {
+        /// Albedo.
+        reflectance: Texture,
+    },
+    /// A smooth metal; `eta` 0 and `k` 1 is Mitsuba's `none`, a perfect mirror.
+    Conductor {
+        /// Real part of the index of refraction.
+        eta: Spectrum,
+        /// Imaginary part.
+        k: Spectrum,
+        /// Scales the reflection.
+        specular_reflectance: Texture,
+    },
+    /// A rough metal.
+    RoughConductor {
+        /// As in `Conductor`.
+        eta: Spectrum,
+        /// As in `Conductor`.
+        k: Spectrum,
+        /// Scales the reflection.
+        specular_reflectance: Texture,
+        /// Of microfacets.
+        distribution: Distribution,
+        /// Roughness along x; the first band of the texture.
+        alpha_u: Texture,
+        /// Roughness along y.
+        alpha_v: Texture,
+    },
+    /// A smooth boundary between two media.
+    Dielectric {
+        /// Index inside / index outside (the normal points outside).
+        eta: f32,
+        /// Scales the reflection.
+        specular_reflectance: Texture,
+        /// Scales the transmission.
+        specular_transmittance: Texture,
+    },
+    /// A thin slab: both its boundaries at once, without displacement.
+    ThinDielectric {
+        /// Index inside / index outside.
+        eta: f32,
+        /// Scales the reflection.
+        specular_reflectance: Texture,
+        /// Scales the transmission.
+        specular_transmittance: Texture,
+    },
+    /// A rough boundary between two media.
+    RoughDielectric {
+        /// Index inside / index outside.
+        eta: f32,
+        /// Scales the reflection.
+        specular_reflectance: Texture,
+        /// Scales the transmission.
+        specular_transmittance: Texture,
+        /// Of microfacets.
+        distribution: Distribution,
+        /// Roughness along x; the first band of the texture.
+        alpha_u: Texture,
+        /// Roughness along y.
+        alpha_v: Texture,
+    },
+    /// A smooth dielectric coat over a diffuse base.
+    Plastic {
+        /// Index inside / index outside.
+        eta: f32,
+        /// The base.
+        diffuse_reflectance: Texture,
+        /// Scales the coat's reflection.
+        specular_reflectance: Texture,
+        /// Whether inner reflections saturate the base's colour.
+        nonlinear: bool,
+    },
+    /// Lets light pass as if nothing were there.
+    Null,
+    /// One material on each side.
+    TwoSided {
+        /// Where the normal points.
+        front: MaterialId,
+        /// Behind.
+        back: MaterialId,
+    },
+}
+
+/// A shape, its surface and its light.
+#[derive(Clone, Debug)]
+pub struct Shape {
+    /// The surface's form.
+    pub geometry: Geometry,
+    /// What it is made of.
+    pub material: MaterialId,
+    /// Radiance of an area light on it, W/(m² sr).
+    pub radiance: Option<Spectrum>,
+    /// Its id, or its type where it has none; for messages.
+    pub name: String,
+    /// Where it stands in the file.
+    pub place: Place,
+}
+
+/// Forms, in their own coordinates.
+#[derive(Clone, Debug)]
+pub enum Geometry {
+    /// Triangles.
+    Mesh {
+        /// The triangles.
+        mesh: Arc<Mesh>,
+        /// Local → world.
+        to_world: DAffine3,
+        /// Whether normals point the other way.
+        flip_normals: bool,
+    },
+    /// −1 … 1 in x and y, normal +z, uv 0 … 1.
+    Rectangle {
+        /// Local → world.
+        to_world: DAffine3,
+        /// Whether its normal points the other way.
+        flip_normals: bool,
+    },
+    /// Radius 1 in x and y, normal +z; u is the radius, v the angle.
+    Disk {
+        /// Local → world.
+        to_world: DAffine3,
+        /// Whether its normal points the other way.
+        flip_normals: bool,
+    },
+    /// A sphere about `center`, before `to_world` (rotation, uniform scale, translation, mirroring).
+    Sphere {
+        /// Local.
+        center: DVec3,
+        /// Local.
+        radius: f64,
+        /// Local → world.
+        to_world: DAffine3,
+        /// Whether its normals point inwards.
+        flip_normals: bool,
+    },
+    /// The side of a cylinder between two points, normals outwards.
+    Cylinder {
+        /// Local.
+        p0: DVec3,
+        /// Local.
+        p1: DVec3,
+        /// Local.
+        radius: f64,
+        /// Local → world.
+        to_world: DAffine3,
+        /// Whether its normals point inwards.
+        flip_normals: bool,
+    },
+}
+
+/// Triangles with shared vertices.
+#[derive(Clone, Debug, Default)]
+pub struct Mesh {
+    /// Vertex positions, finite.
+    pub positions: Vec<[f32; 3]>,
+    /// One per vertex, or none: then the triangles are flat. Any length; zero falls back to the triangle's own.
+    pub normals: Vec<[f32; 3]>,
+    /// One per vertex, or none.
+    pub uvs: Vec<[f32; 2]>,
+    /// Corners, counter-clockwise seen from outside.
+    pub triangles: Vec<[u32; 3]>,
+}
+
+/// Lights that are not on a shape.
+#[derive(Clone, Debug)]
+pub struct Emitter {
+    /// Which light.
+    pub kind: EmitterKind,
+    /// Where it stands in the file.
+    pub place: Place,
+}
+
+/// Kinds of light.
+#[derive(Clone, Debug)]
+pub enum EmitterKind {
+    /// The same intensity in every direction.
+    Point {
+        /// In the world.
+        position: DVec3,
+        /// W/sr.
+        intensity: Spectrum,
+    },
+    /// A cone along z that falls off linearly from `beam_width` to `cutoff_angle`.
+    Spot {
+        /// Local → world.
+        to_world: DAffine3,
+        /// W/sr on the axis.
+        intensity: Spectrum,
+        /// In degrees, half the cone.
+        cutoff_angle: f64,
+        /// In degrees, half the cone.
+        beam_width: f64,
+    },
+    /// Parallel light.
+    Directional {
+        /// Which way it travels, in the world; any length but 0.
+        direction: DVec3,
+        /// W/m² perpendicular to it.
+        irradiance: Spectrum,
+    },
+    /// The same radiance from everywhere.
+    Constant {
+        /// W/(m² sr).
+        radiance: Spectrum,
+    },
+    /// An image of the surroundings.
+    Envmap {
+        /// Latitude and longitude.
+        image: Arc<EnvironmentImage>,
+        /// Multiplies the image.
+        scale: f64,
+        /// Local → world; up is y.
+        to_world: DAffine3,
+    },
+}
+
+/// Pixels of an environment, linear, finite and not negative.
+#[derive(Clone, Debug)]
+pub struct EnvironmentImage {
+    /// In pixels.
+    pub width: u32,
+    /// In pixels.
+    pub height: u32,
+    /// Rows from the top.
+    pub texels: Vec<Spectrum>,
+}

@@ -1,0 +1,3 @@
+//! The scene: what was written down, and what rays meet.
+
+pub mod description;

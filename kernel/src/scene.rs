@@ -1,0 +1,62 @@
+//! The world that paths are sampled in.
+
+use crate::{
+    bsdf::Bsdf,
+    camera::Camera,
+    density::Chance,
+    light::Light,
+    point::{Point, Ray, Segment},
+    real::Real,
+};
+
+/// Geometry, surfaces, lights and a camera.
+///
+/// Every method is infallible: a scene that can fail answers black, notes the fault, and its owner looks once per path.
+pub trait Scene {
+    /// What the scene remembers of a ray's end, to find surface and light there.
+    type Hit: Copy;
+    /// Names a light.
+    type LightId: Copy;
+    /// The camera.
+    type Camera: Camera;
+    /// The surface at a hit, its parameters already looked up.
+    type Bsdf<'a>: Bsdf
+    where
+        Self: 'a;
+    /// A light.
+    type Light<'a>: Light
+    where
+        Self: 'a;
+
+    /// The camera.
+    fn camera(&self) -> &Self::Camera;
+
+    /// The nearest surface along the ray.
+    fn intersect(&self, ray: &Ray) -> Option<(Point, Self::Hit)>;
+
+    /// Whether nothing lies between the two points.
+    fn unoccluded(&self, a: &Point, b: &Point, segment: Segment) -> bool;
+
+    /// The surface at a hit.
+    fn bsdf(&self, point: &Point, hit: Self::Hit) -> Self::Bsdf<'_>;
+
+    /// A light, by name.
+    fn light(&self, id: Self::LightId) -> Self::Light<'_>;
+
+    /// The light whose surface was hit, if that surface is one.
+    fn light_id_at(&self, hit: Self::Hit) -> Option<Self::LightId>;
+
+    /// The one light that rays which escape land on: the sum of everything infinitely far away that is not a Dirac.
+    fn environment(&self) -> Option<Self::LightId>;
+
+    /// Chooses a light with a number in [0, 1): to light the receiver `lit`, or, without one, to start a light walk.
+    fn pick_light(&self, lit: Option<&Point>, u: Real) -> Option<(Self::LightId, Chance)>;
+
+    /// The chance that [`Scene::pick_light`] chooses `id`, asked afterwards.
+    fn light_chance(&self, id: Self::LightId, lit: Option<&Point>) -> Chance;
+
+    /// Whether the lens sees through emitters, environments included, as if they were not there.
+    fn hides_emitters(&self) -> bool {
+        false
+    }
+}

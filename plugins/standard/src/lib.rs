@@ -1,0 +1,2 @@
+//! Built-in shaders.
+#![no_std]
