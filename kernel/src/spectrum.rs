@@ -60,11 +60,7 @@ macro_rules! bandwise {
             type Output = Self;
             #[inline(always)]
             fn $method(self, other: Self) -> Self {
-                let mut out = self;
-                for (a, b) in out.0.iter_mut().zip(other.0) {
-                    *a = *a $op b;
-                }
-                out
+                Self(core::array::from_fn(|band| self.0[band] $op other.0[band]))
             }
         }
     )+};

@@ -31,11 +31,11 @@ pub struct Perspective {
 }
 
 impl Perspective {
-    fn to_world(&self, v: Vec3) -> Vec3 {
+    fn in_world(&self, v: Vec3) -> Vec3 {
         self.axes[0] * v.x + self.axes[1] * v.y + self.axes[2] * v.z
     }
 
-    fn to_camera(&self, v: Vec3) -> Vec3 {
+    fn in_camera(&self, v: Vec3) -> Vec3 {
         vec3(dot(v, self.axes[0]), dot(v, self.axes[1]), dot(v, self.axes[2]))
     }
 
@@ -61,7 +61,7 @@ impl Perspective {
         Seen {
             raster,
             point,
-            direction: self.to_world(direction),
+            direction: self.in_world(direction),
             weight: Spectrum::ONE,
             end,
             spread: Spread::SolidAngle(PerSolidAngle(pdf)),
@@ -97,7 +97,7 @@ impl Camera for Perspective {
         let lens = if self.lens_radius > 0.0 { warp::disk(lens) * self.lens_radius } else { Vec2::ZERO };
         let (point, _) = self.lens_point(lens);
         let (direction, _) = point.direction_to(from)?;
-        let direction = self.to_camera(direction);
+        let direction = self.in_camera(direction);
         if direction.z <= 0.0 {
             return None;
         }
@@ -108,8 +108,8 @@ impl Camera for Perspective {
         if self.lens_radius <= 0.0 {
             return None;
         }
-        let o = self.to_camera(origin - self.position);
-        let d = self.to_camera(direction);
+        let o = self.in_camera(origin - self.position);
+        let d = self.in_camera(direction);
         // Only light that travels against the viewing direction, from in front, reaches the film.
         if d.z >= 0.0 || o.z <= 0.0 {
             return None;

@@ -1,0 +1,213 @@
+//! From the camera: light hits (s = 0), next event (s = 1), and connections to the light walk's vertices.
+
+use crate::{
+    bsdf::{Bsdf, Carried},
+    camera::Camera,
+    density::conversion,
+    film::{Contribution, Film},
+    light::Light,
+    light_walk::LightVertex,
+    point::{Place, Point, Ray, Segment},
+    real::{Real, Vec2, Vec3},
+    roulette::survive,
+    sampler::{DIMENSIONS_PER_VERTEX, Sampler, Walk},
+    scene::Scene,
+    spectrum::Spectrum,
+    strategy::Strategy,
+    technique::{Join, Technique},
+    vertex::{Vertex, step},
+    weight::{Side, share},
+};
+
+/// How many of a vertex's dimensions one next event takes; those beyond the first lie far away from all others.
+const NEXT_EVENT_STRIDE: u32 = 1 << 20;
+
+struct CameraWalk<'a, 's, S: Scene, P, F> {
+    scene: &'s S,
+    strategy: &'a Strategy,
+    joined_length: u32,
+    sampler: &'a mut P,
+    film: &'a mut F,
+}
+
+/// The camera walk's newest vertex as a joint needs it.
+struct End<'a> {
+    side: &'a Side,
+    throughput: Spectrum,
+    /// Segments from the lens to here.
+    length: u32,
+}
+
+/// Traces one camera walk and joins each of its vertices.
+pub(crate) fn camera_walk<'s, S: Scene>(
+    scene: &'s S,
+    strategy: &Strategy,
+    joined_length: u32,
+    sampler: &mut impl Sampler,
+    raster: Vec2,
+    light_path: &[Option<LightVertex<'s, S>>],
+    film: &mut impl Film,
+) {
+    CameraWalk { scene, strategy, joined_length, sampler, film }.run(raster, light_path);
+}
+
+impl<'s, S: Scene, P: Sampler, F: Film> CameraWalk<'_, 's, S, P, F> {
+    fn run(&mut self, raster: Vec2, light_path: &[Option<LightVertex<'s, S>>]) {
+        let Strategy { techniques, heuristic, max_depth, .. } = *self.strategy;
+        let scene = self.scene;
+        self.sampler.seek(Walk::Camera, 2);
+        let seen = scene.camera().look(raster, self.sampler.next_pair());
+        let mut previous = seen.point;
+        let mut direction = seen.direction;
+        let mut ray =
+            Ray { origin: previous.position + direction * seen.near, direction, t_max: seen.far - seen.near, segment: Segment::Lens };
+        let lens_hit = if seen.end.can_be_hit() { techniques.lens_hit } else { 0.0 };
+        let mut side = Side::start(heuristic, f64::from(seen.end.value()), lens_hit);
+        let mut throughput = seen.weight;
+        let (mut pdf, mut pdf_rev, mut delta) = (f64::from(seen.spread.value()), 0.0, false);
+        let mut eta_scale: Real = 1.0;
+        let mut length = 1;
+        while length <= max_depth {
+            let effort = if length == 1 { techniques.lens_splat } else { techniques.connection };
+            let Some((point, hit)) = scene.intersect(&ray) else {
+                if let Some(id) = scene.environment()
+                    && !(length == 1 && scene.hides_emitters())
+                {
+                    let at = Point::distant(previous.position, -direction);
+                    side = side.advance(heuristic, &step(&previous, &at, direction, pdf, pdf_rev, delta, effort));
+                    self.light_hit(id, &at, &previous, direction, delta, &End { side: &side, throughput, length });
+                }
+                return;
+            };
+            side = side.advance(heuristic, &step(&previous, &point, direction, pdf, pdf_rev, delta, effort));
+            if let Some(id) = scene.light_id_at(hit) {
+                self.light_hit(id, &point, &previous, direction, delta, &End { side: &side, throughput, length });
+            }
+            if length >= max_depth {
+                return;
+            }
+            let Some(vertex) = Vertex::new(point, scene.bsdf(&point, hit), -direction, Carried::Radiance) else { return };
+            if vertex.joins() {
+                let end = End { side: &side, throughput, length };
+                if techniques.uses(Join::NextEvent) {
+                    self.next_event(&vertex, &end);
+                }
+                for light_vertex in light_path.iter().flatten() {
+                    self.connect(&vertex, &end, light_vertex);
+                }
+            }
+            self.sampler.seek(Walk::Camera, length * DIMENSIONS_PER_VERTEX + 3);
+            let Some(bounce) = vertex.bounce([self.sampler.next(), self.sampler.next(), self.sampler.next()]) else { return };
+            throughput *= bounce.weight;
+            eta_scale *= bounce.eta * bounce.eta;
+            if length >= self.strategy.rr_depth {
+                match survive(throughput.max() * eta_scale, self.sampler.next()) {
+                    Some(scale) => throughput = throughput * scale,
+                    None => return,
+                }
+            }
+            (previous, direction) = (point, bounce.direction);
+            (pdf, pdf_rev, delta) = (bounce.pdf, bounce.pdf_rev, bounce.delta);
+            ray = Ray::leaving(&previous, direction, Segment::Inner);
+            length += 1;
+        }
+    }
+
+    /// s = 0: the walk landed on the light `id` at `at`, coming from `previous`.
+    fn light_hit(&mut self, id: S::LightId, at: &Point, previous: &Point, direction: Vec3, delta: bool, end: &End) {
+        let Strategy { techniques, heuristic, .. } = *self.strategy;
+        if !techniques.uses(Join::LightHit) {
+            return;
+        }
+        let light = self.scene.light(id);
+        let exit = light.emitted(at, -direction);
+        if exit.radiance.is_black() {
+            return;
+        }
+        let made = f64::from(self.scene.light_chance(id, None).0) * f64::from(exit.end.value());
+        let joined = end.length <= self.joined_length;
+        // Joining the last two vertices instead: the walk's own x_0 shown to the lens, or next event, which knows its receiver.
+        // No direction is shown to a camera that is itself one direction.
+        let apart = at.place == Place::Distant && previous.place == Place::Distant;
+        let instead = if delta || apart {
+            0.0
+        } else if end.length == 1 {
+            if joined { heuristic.of(techniques.lens_splat * made) } else { 0.0 }
+        } else if techniques.uses(Join::NextEvent) {
+            let picked = f64::from(self.scene.light_chance(id, Some(previous)).0);
+            heuristic.of(techniques.next_event * picked * f64::from(light.next_event_density(at, previous).value()))
+        } else {
+            0.0
+        };
+        let closed = if joined { heuristic.of(made) * end.side.closed(heuristic, f64::from(exit.spread.value())) } else { 0.0 };
+        let others = end.side.per_forward() * (instead + closed);
+        self.film.add(Contribution {
+            value: end.throughput * exit.radiance,
+            weight: share(heuristic.of(techniques.light_hit), others) as Real,
+            technique: Technique { s: 0, t: end.length + 1 },
+        });
+    }
+
+    /// s = 1: points of lights, chosen for this vertex.
+    fn next_event<B: Bsdf>(&mut self, vertex: &Vertex<B>, end: &End) {
+        let count = self.strategy.techniques.next_event;
+        for turn in 0..count as u32 {
+            self.sampler.seek(Walk::Camera, end.length * DIMENSIONS_PER_VERTEX + turn * NEXT_EVENT_STRIDE);
+            let (u, pair) = (self.sampler.next(), self.sampler.next_pair());
+            if let Some(contribution) = self.illuminated(vertex, end, u, pair) {
+                self.film.add(contribution);
+            }
+        }
+    }
+
+    fn illuminated<B: Bsdf>(&self, vertex: &Vertex<B>, end: &End, u: Real, pair: [Real; 2]) -> Option<Contribution> {
+        let Strategy { techniques, heuristic, .. } = *self.strategy;
+        let point = &vertex.point;
+        let (id, chance) = self.scene.pick_light(Some(point), u)?;
+        let sampled = self.scene.light(id).illuminate(point, pair)?;
+        let scatter = vertex.scatter(sampled.direction)?;
+        let per_sample = techniques.next_event as Real * chance.0;
+        let value = end.throughput * scatter.value * sampled.weight / per_sample;
+        if value.is_black() || !self.scene.unoccluded(point, &sampled.point, Segment::Inner) {
+            return None;
+        }
+        let exit = sampled.exit;
+        let own = heuristic.of(techniques.next_event * f64::from(chance.0) * f64::from(sampled.density.value()));
+        let mut others = 0.0;
+        if exit.end.can_be_hit() {
+            let landed = f64::from(scatter.pdf.0) * conversion(point, &sampled.point, sampled.direction);
+            others += heuristic.of(techniques.light_hit * landed);
+        }
+        if end.length < self.joined_length {
+            let made = f64::from(self.scene.light_chance(id, None).0) * f64::from(exit.end.value());
+            let across = f64::from(exit.spread.value()) * conversion(&sampled.point, point, sampled.direction);
+            others += heuristic.of(made) * end.side.sum(heuristic, across, f64::from(scatter.pdf_rev.0));
+        }
+        Some(Contribution { value, weight: share(own, others) as Real, technique: Technique { s: 1, t: end.length + 1 } })
+    }
+
+    /// s, t ≥ 2: this vertex and one of the light walk's.
+    fn connect<B: Bsdf>(&mut self, vertex: &Vertex<B>, end: &End, light_vertex: &LightVertex<'s, S>) {
+        let Strategy { techniques, heuristic, .. } = *self.strategy;
+        if end.length.saturating_add(light_vertex.length) >= self.joined_length {
+            return;
+        }
+        let (near, far) = (&vertex.point, &light_vertex.vertex.point);
+        let Some((direction, squared)) = near.direction_to(far) else { return };
+        let Some(here) = vertex.scatter(direction) else { return };
+        let Some(there) = light_vertex.vertex.scatter(-direction) else { return };
+        let value = end.throughput * here.value * (there.value * light_vertex.throughput) / squared;
+        if value.is_black() || !self.scene.unoccluded(near, far, Segment::Inner) {
+            return;
+        }
+        let to_far = f64::from(here.pdf.0) * conversion(near, far, direction);
+        let to_near = f64::from(there.pdf.0) * conversion(far, near, direction);
+        let others = light_vertex.side.sum(heuristic, to_far, f64::from(there.pdf_rev.0))
+            + end.side.sum(heuristic, to_near, f64::from(here.pdf_rev.0));
+        self.film.add(Contribution {
+            value,
+            weight: share(heuristic.of(techniques.connection), others) as Real,
+            technique: Technique { s: light_vertex.length + 1, t: end.length + 1 },
+        });
+    }
+}

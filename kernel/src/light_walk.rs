@@ -1,0 +1,227 @@
+//! From a light: emission, lens splats (t = 1), lens hits (t = 0), and the vertices that the camera walk connects to.
+
+use crate::{
+    bsdf::{Bsdf, Carried},
+    camera::{Camera, Seen},
+    density::{Spread, conversion},
+    film::{Contribution, Film},
+    light::{Emission, Light},
+    math::dot,
+    point::{Point, Ray, Segment},
+    real::{Real, Vec3},
+    roulette::survive,
+    sampler::{DIMENSIONS_PER_VERTEX, Sampler, Walk},
+    scene::Scene,
+    spectrum::Spectrum,
+    strategy::Strategy,
+    technique::{Join, Technique},
+    vertex::{Vertex, step},
+    weight::{Side, share},
+};
+
+/// A vertex of a light walk, kept for connections.
+pub struct LightVertex<'s, S: Scene + 's> {
+    pub(crate) vertex: Vertex<S::Bsdf<'s>>,
+    /// What the walk carries as it arrives.
+    pub(crate) throughput: Spectrum,
+    pub(crate) side: Side,
+    /// Segments from the light to here.
+    pub(crate) length: u32,
+}
+
+struct LightWalk<'a, 's, S: Scene, P, F> {
+    scene: &'s S,
+    strategy: &'a Strategy,
+    joined_length: u32,
+    sampler: &'a mut P,
+    film: &'a mut F,
+}
+
+/// Traces one light walk; returns how many vertices it left in `store`.
+pub(crate) fn light_walk<'s, S: Scene>(
+    scene: &'s S,
+    strategy: &Strategy,
+    joined_length: u32,
+    sampler: &mut impl Sampler,
+    store: &mut [Option<LightVertex<'s, S>>],
+    film: &mut impl Film,
+) -> usize {
+    let mut walk = LightWalk { scene, strategy, joined_length, sampler, film };
+    walk.run(store)
+}
+
+impl<'s, S: Scene, P: Sampler, F: Film> LightWalk<'_, 's, S, P, F> {
+    fn run(&mut self, store: &mut [Option<LightVertex<'s, S>>]) -> usize {
+        let Strategy { techniques, heuristic, .. } = *self.strategy;
+        let scene = self.scene;
+        self.sampler.seek(Walk::Light, 0);
+        let Some((id, chance)) = scene.pick_light(None, self.sampler.next()) else { return 0 };
+        let light = scene.light(id);
+        let u = [self.sampler.next(), self.sampler.next(), self.sampler.next(), self.sampler.next()];
+        let Some(emission) = light.emit(u) else { return 0 };
+        let Emission { point: mut previous, mut direction, weight, exit } = emission;
+        let end = f64::from(chance.0) * f64::from(exit.end.value());
+        let spread = f64::from(exit.spread.value());
+        if weight.is_black() || !weight.is_finite() || end <= 0.0 || spread <= 0.0 {
+            return 0;
+        }
+        let seen_directly = exit.end.can_be_hit() && !scene.hides_emitters();
+        if seen_directly && techniques.uses(Join::LensSplat) && self.joined_length >= 1 {
+            self.splat_light(&light, &previous, chance.0);
+        }
+
+        let mut side = Side::start(heuristic, end, if exit.end.can_be_hit() { techniques.light_hit } else { 0.0 });
+        let mut throughput = weight / chance.0;
+        let start = throughput.max();
+        let (mut pdf, mut pdf_rev, mut delta) = (spread, 0.0, false);
+        let mut stored = 0;
+        let mut length = 1;
+        loop {
+            if techniques.uses(Join::LensHit) && (length > 1 || seen_directly) {
+                self.lens_hit(&previous, direction, length, &side, throughput, (pdf, pdf_rev, delta));
+            }
+            // A vertex here makes paths of at least one segment more.
+            if length >= self.joined_length {
+                return stored;
+            }
+            let Some((point, hit)) = scene.intersect(&Ray::leaving(&previous, direction, Segment::Inner)) else { return stored };
+            let effort = if length == 1 {
+                let picked = f64::from(scene.light_chance(id, Some(&point)).0);
+                techniques.next_event * picked * f64::from(light.next_event_density(&previous, &point).value()) / end
+            } else {
+                techniques.connection
+            };
+            side = side.advance(heuristic, &step(&previous, &point, direction, pdf, pdf_rev, delta, effort));
+            let Some(vertex) = Vertex::new(point, scene.bsdf(&point, hit), -direction, Carried::Importance) else { return stored };
+            self.sampler.seek(Walk::Light, length * DIMENSIONS_PER_VERTEX);
+            let lens = self.sampler.next_pair();
+            let bounce = vertex.bounce([self.sampler.next(), self.sampler.next(), self.sampler.next()]);
+            if vertex.joins() {
+                let hidden = scene.hides_emitters() && scene.light_id_at(hit).is_some();
+                if techniques.uses(Join::LensSplat) && !hidden {
+                    self.splat(&vertex, length, &side, throughput, lens);
+                }
+                if techniques.uses(Join::Connection)
+                    && let Some(slot) = store.get_mut(stored)
+                {
+                    *slot = Some(LightVertex { vertex, throughput, side, length });
+                    stored += 1;
+                }
+            }
+            let Some(bounce) = bounce else { return stored };
+            throughput *= bounce.weight;
+            if length >= self.strategy.rr_depth {
+                match survive(throughput.max() / start, self.sampler.next()) {
+                    Some(scale) => throughput = throughput * scale,
+                    None => return stored,
+                }
+            }
+            (previous, direction) = (point, bounce.direction);
+            (pdf, pdf_rev, delta) = (bounce.pdf, bounce.pdf_rev, bounce.delta);
+            length += 1;
+        }
+    }
+
+    /// (s, t) = (1, 1): the walk's own first vertex, shown to the lens. Next event's choice of light has no part in it.
+    fn splat_light(&mut self, light: &S::Light<'s>, point: &Point, chance: Real) {
+        let Strategy { techniques, heuristic, .. } = *self.strategy;
+        self.sampler.seek(Walk::Light, 5);
+        let lens = self.sampler.next_pair();
+        let Some(seen) = self.scene.camera().see(point, lens) else { return };
+        let exit = light.emitted(point, -seen.direction);
+        if exit.radiance.is_black() || !self.lens_sees(&seen, point) {
+            return;
+        }
+        let made_by_light = f64::from(chance) * f64::from(exit.end.value());
+        let made_by_camera = f64::from(seen.spread.value()) * conversion(&seen.point, point, seen.direction);
+        let on_lens = f64::from(exit.spread.value()) * conversion(point, &seen.point, seen.direction);
+        let others = heuristic.of(techniques.light_hit * made_by_camera / made_by_light) + self.lens_hit_share(&seen, on_lens);
+        self.film.splat(
+            seen.raster,
+            Contribution {
+                value: exit.radiance * seen.weight * ((made_by_camera / made_by_light) as Real),
+                weight: share(heuristic.of(techniques.lens_splat), others) as Real,
+                technique: Technique { s: 1, t: 1 },
+            },
+        );
+    }
+
+    /// t = 1: a vertex of the walk, shown to the lens.
+    fn splat<B: Bsdf>(&mut self, vertex: &Vertex<B>, length: u32, side: &Side, throughput: Spectrum, lens: [Real; 2]) {
+        let Strategy { techniques, heuristic, .. } = *self.strategy;
+        let point = &vertex.point;
+        let Some(seen) = self.scene.camera().see(point, lens) else { return };
+        let Some(scatter) = vertex.scatter(-seen.direction) else { return };
+        if !self.lens_sees(&seen, point) {
+            return;
+        }
+        let spread = f64::from(seen.spread.value());
+        let made_by_camera = spread * conversion(&seen.point, point, seen.direction);
+        // The cosine at the vertex is in the scattered value already.
+        let importance = match seen.spread {
+            Spread::SolidAngle(_) => seen.point.direction_to(point).map_or(0.0, |(_, squared)| spread / f64::from(squared)),
+            Spread::Parallel(_) => spread,
+        };
+        let on_lens = f64::from(scatter.pdf.0) * conversion(point, &seen.point, seen.direction);
+        let others = side.sum(heuristic, made_by_camera, f64::from(scatter.pdf_rev.0)) + self.lens_hit_share(&seen, on_lens);
+        self.film.splat(
+            seen.raster,
+            Contribution {
+                value: throughput * scatter.value * seen.weight * (importance as Real),
+                weight: share(heuristic.of(techniques.lens_splat), others) as Real,
+                technique: Technique { s: length + 1, t: 1 },
+            },
+        );
+    }
+
+    /// What landing on the lens adds to a splat's weight, if `on_lens` is how densely the walk would have landed there.
+    fn lens_hit_share(&self, seen: &Seen, on_lens: f64) -> f64 {
+        if seen.end.can_be_hit() {
+            self.strategy.heuristic.of(self.strategy.techniques.lens_hit * on_lens / f64::from(seen.end.value()))
+        } else {
+            0.0
+        }
+    }
+
+    /// Whether the lens sees `point` along this ray: within its clipping distances, and nothing in between.
+    fn lens_sees(&self, seen: &Seen, point: &Point) -> bool {
+        let distance = if point.place == crate::point::Place::Distant {
+            Real::INFINITY
+        } else {
+            dot(point.position - seen.point.position, seen.direction)
+        };
+        if distance <= seen.near || distance > seen.far {
+            return false;
+        }
+        let mut from = seen.point;
+        from.position += seen.direction * seen.near;
+        self.scene.unoccluded(point, &from, Segment::Lens)
+    }
+
+    /// t = 0: the segment from `previous` crosses the lens. The lens casts no shadow: the walk goes on as if nothing were there.
+    fn lens_hit(&mut self, previous: &Point, direction: Vec3, length: u32, side: &Side, throughput: Spectrum, way: (f64, f64, bool)) {
+        let Strategy { techniques, heuristic, .. } = *self.strategy;
+        if length > self.joined_length {
+            return;
+        }
+        let Some(seen) = self.scene.camera().hit(previous.leave(direction), direction, Real::INFINITY) else { return };
+        if !self.lens_sees(&seen, previous) {
+            return;
+        }
+        let (pdf, pdf_rev, delta) = way;
+        let lens = &seen.point;
+        let (end, spread) = (f64::from(seen.end.value()), f64::from(seen.spread.value()));
+        let cos = f64::from(dot(lens.normal, direction).abs());
+        // Showing the vertex before to the lens is the last step's other way; the walk has not counted it yet.
+        let at_lens = side.advance(heuristic, &step(previous, lens, direction, pdf, pdf_rev, delta, techniques.lens_splat));
+        let others = at_lens.sum(heuristic, end, spread);
+        self.film.splat(
+            seen.raster,
+            Contribution {
+                value: throughput * seen.weight * ((end * spread / cos) as Real),
+                weight: share(heuristic.of(techniques.lens_hit), others) as Real,
+                technique: Technique { s: length + 1, t: 0 },
+            },
+        );
+    }
+}

@@ -1,0 +1,28 @@
+//! What one call of [`sample`](crate::sample::sample) is to do.
+
+use crate::technique::{Heuristic, Join, Techniques};
+
+/// The plan for a pass: which techniques, how they share, how far paths go.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Strategy {
+    /// How much effort each kind of join gets.
+    pub techniques: Techniques,
+    /// How they share a path.
+    pub heuristic: Heuristic,
+    /// The longest path, in segments; `u32::MAX` is unlimited.
+    pub max_depth: u32,
+    /// Russian roulette begins after this many scattering events of a walk.
+    pub rr_depth: u32,
+}
+
+impl Strategy {
+    /// The longest path that every technique may make when `stored` light vertices can be kept: a connection can only reach
+    /// what was stored. Longer paths are left to s = 0 and s = 1, whose weights know it.
+    pub(crate) fn joined_length(&self, stored: usize) -> u32 {
+        if self.techniques.uses(Join::Connection) {
+            u32::try_from(stored).unwrap_or(u32::MAX).saturating_add(1).min(self.max_depth)
+        } else {
+            self.max_depth
+        }
+    }
+}

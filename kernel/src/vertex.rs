@@ -1,0 +1,102 @@
+//! A surface that a walk has reached, and what happens to light there.
+
+use crate::{
+    bsdf::{Bsdf, Carried, Lobe, Made, Scatter, Scattered},
+    density::conversion,
+    math::dot,
+    point::Point,
+    real::{Real, Vec3},
+    spectrum::Spectrum,
+    weight::Step,
+};
+
+/// A point of a walk with its surface and the direction the walk came from.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Vertex<B> {
+    pub point: Point,
+    pub bsdf: B,
+    /// Towards where the walk came from, in the world and in the shading frame.
+    pub from: Vec3,
+    pub wo: Vec3,
+    pub carried: Carried,
+}
+
+/// A scattering event as the walk that goes through it needs it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Bounce {
+    pub direction: Vec3,
+    pub weight: Spectrum,
+    pub pdf: f64,
+    pub pdf_rev: f64,
+    pub delta: bool,
+    pub eta: Real,
+}
+
+impl<B: Bsdf> Vertex<B> {
+    /// `None` where the walk arrived on different sides of the geometric and of the shading normal.
+    #[inline]
+    pub fn new(point: Point, bsdf: B, from: Vec3, carried: Carried) -> Option<Self> {
+        point.same_side(from).then(|| Self { point, bsdf, from, wo: point.frame.to_local(from), carried })
+    }
+
+    /// Whether a path can be joined here.
+    #[inline]
+    pub fn joins(&self) -> bool {
+        self.bsdf.lobes().intersects(Lobe::SMOOTH)
+    }
+
+    /// The smooth lobes towards `toward`, the adjoint factor of the shading normal included;
+    /// `None` where nothing is scattered there.
+    #[inline]
+    pub fn scatter(&self, toward: Vec3) -> Option<Scatter> {
+        if !self.point.same_side(toward) {
+            return None;
+        }
+        let mut scatter = self.bsdf.eval(self.wo, self.point.frame.to_local(toward), self.carried);
+        if scatter.value.is_black() {
+            return None;
+        }
+        if self.carried == Carried::Importance {
+            scatter.value = scatter.value * self.adjoint(toward);
+        }
+        Some(scatter)
+    }
+
+    /// Where the walk goes on.
+    #[inline]
+    pub fn bounce(&self, u: [Real; 3]) -> Option<Bounce> {
+        let Scattered { wi, weight, made, eta, .. } = self.bsdf.sample(self.wo, u, self.carried)?;
+        let direction = self.point.frame.to_world(wi);
+        if weight.is_black() || !self.point.same_side(direction) {
+            return None;
+        }
+        let weight = if self.carried == Carried::Importance { weight * self.adjoint(direction) } else { weight };
+        let (pdf, pdf_rev, delta) = match made {
+            Made::Smooth { pdf, pdf_rev } => (f64::from(pdf.0), f64::from(pdf_rev.0), false),
+            Made::Delta { chance, chance_rev } => {
+                // A refracted bundle changes its solid angle: η_o² cos θ_o dω_o = η_i² cos θ_i dω_i. The reverse chance
+                // is per dω_o, the forward one per dω_i.
+                let widening = f64::from(self.wo.z.abs()) / (f64::from(eta) * f64::from(eta) * f64::from(wi.z.abs()));
+                (f64::from(chance.0), f64::from(chance_rev.0) * widening, true)
+            }
+        };
+        (pdf > 0.0).then_some(Bounce { direction, weight, pdf, pdf_rev, delta, eta })
+    }
+
+    /// |ω_o·n_s| |ω_i·n_g| / (|ω_o·n_g| |ω_i·n_s|): what a shading normal does to importance (Veach 1997, 5.3.2).
+    #[inline]
+    fn adjoint(&self, toward: Vec3) -> Real {
+        if self.point.normal == self.point.frame.z {
+            return 1.0;
+        }
+        let Point { normal, frame, .. } = &self.point;
+        let below = (dot(self.from, *normal) * dot(toward, frame.z)).abs();
+        if below > 0.0 { (self.wo.z * dot(toward, *normal)).abs() / below } else { 0.0 }
+    }
+}
+
+/// A walk's way from `from` to `to`.
+#[inline]
+pub(crate) fn step(from: &Point, to: &Point, direction: Vec3, pdf: f64, pdf_rev: f64, delta: bool, effort: f64) -> Step {
+    Step { pdf, pdf_rev, delta, forward: conversion(from, to, direction), backward: conversion(to, from, direction), effort }
+}
