@@ -35,7 +35,9 @@ pub trait Scene {
     fn intersect(&self, ray: &Ray) -> Option<(Point, Self::Hit)>;
 
     /// Whether nothing lies between the two points.
-    fn unoccluded(&self, a: &Point, b: &Point, segment: Segment) -> bool;
+    fn unoccluded(&self, a: &Point, b: &Point, segment: Segment) -> bool {
+        self.intersect(&Ray::between(a, b, segment)).is_none()
+    }
 
     /// The surface at a hit.
     fn bsdf(&self, point: &Point, hit: Self::Hit) -> Self::Bsdf<'_>;
@@ -44,16 +46,34 @@ pub trait Scene {
     fn light(&self, id: Self::LightId) -> Self::Light<'_>;
 
     /// The light whose surface was hit, if that surface is one.
-    fn light_id_at(&self, hit: Self::Hit) -> Option<Self::LightId>;
+    fn light_id_at(&self, hit: Self::Hit) -> Option<Self::LightId> {
+        let _ = hit;
+        None
+    }
 
     /// The one light that rays which escape land on: the sum of everything infinitely far away that is not a Dirac.
-    fn environment(&self) -> Option<Self::LightId>;
+    fn environment(&self) -> Option<Self::LightId> {
+        None
+    }
+
+    /// Every light, for a scene that leaves the choice among them to the two methods below; else it may stay empty.
+    fn lights(&self) -> &[Self::LightId] {
+        &[]
+    }
 
     /// Chooses a light with a number in [0, 1): to light the receiver `lit`, or, without one, to start a light walk.
-    fn pick_light(&self, lit: Option<&Point>, u: Real) -> Option<(Self::LightId, Chance)>;
+    /// Unless told otherwise, each light as often as the next.
+    fn pick_light(&self, lit: Option<&Point>, u: Real) -> Option<(Self::LightId, Chance)> {
+        let lights = self.lights();
+        let id = *lights.get((u * lights.len() as Real) as usize)?;
+        Some((id, self.light_chance(id, lit)))
+    }
 
     /// The chance that [`Scene::pick_light`] chooses `id`, asked afterwards.
-    fn light_chance(&self, id: Self::LightId, lit: Option<&Point>) -> Chance;
+    fn light_chance(&self, id: Self::LightId, lit: Option<&Point>) -> Chance {
+        let _ = (id, lit);
+        Chance(1.0 / self.lights().len().max(1) as Real)
+    }
 
     /// Whether the lens sees through emitters, environments included, as if they were not there.
     fn hides_emitters(&self) -> bool {

@@ -16,6 +16,11 @@ pub struct Strategy {
 }
 
 impl Strategy {
+    /// These techniques with the balance heuristic and roulette from the fifth scattering on.
+    pub const fn new(techniques: Techniques, max_depth: u32) -> Self {
+        Self { techniques, heuristic: Heuristic::Balance, max_depth, rr_depth: 5 }
+    }
+
     /// The longest path that every technique may make when `stored` light vertices can be kept: a connection can only reach
     /// what was stored. Longer paths are left to s = 0 and s = 1, whose weights know it.
     pub(crate) fn joined_length(&self, stored: usize) -> u32 {

@@ -21,6 +21,12 @@ pub struct FilmPlane {
 }
 
 impl FilmPlane {
+    /// A whole image of `resolution` pixels, centred on the optical axis, on a plane 2 · `half_width` wide.
+    pub fn centred(resolution: Vec2, half_width: Real) -> Self {
+        let half = vec2(half_width, half_width * resolution.y / resolution.x);
+        Self { half, resolution, window_min: Vec2::ZERO, window_max: resolution, principal: Vec2::ZERO }
+    }
+
     /// Raster → plane.
     #[inline]
     pub fn at(&self, raster: Vec2) -> Vec2 {

@@ -31,6 +31,11 @@ pub struct Perspective {
 }
 
 impl Perspective {
+    /// A pinhole at `position` that looks along `axes[2]`.
+    pub fn pinhole(position: Vec3, axes: [Vec3; 3], film: FilmPlane) -> Self {
+        Self { position, axes, film, lens_radius: 0.0, focus_distance: 1.0, near: 0.0, far: Real::INFINITY }
+    }
+
     fn in_world(&self, v: Vec3) -> Vec3 {
         self.axes[0] * v.x + self.axes[1] * v.y + self.axes[2] * v.z
     }

@@ -1,0 +1,1 @@
+//! Narrated programs, one lesson each: run one with `cargo run --release -p bidir-examples --example NAME`.
