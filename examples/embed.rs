@@ -1,5 +1,4 @@
-//! The kernel inside another program: its own geometry, one BSDF, one light, and an image, embed.png.
-//! A ball under a sky. The program brings traits and storage; the kernel samples, joins and weighs.
+//! The kernel inside another program, which brings geometry (a ball), one BSDF, one light (a sky), a film and storage.
 use bidir_kernel::{camera::*, light::EnvironmentLight, profile::Profiled, sampler::Independent, *};
 struct Clay; // Lambert: f = ρ/π with ρ = 1/2, sampled by the cosine.
 impl Bsdf for Clay {
