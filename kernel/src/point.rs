@@ -20,7 +20,7 @@ pub enum Place {
 /// A point that a path goes through.
 #[derive(Clone, Copy, Debug)]
 pub struct Point {
-    /// In the world. For a distant point: anywhere far enough out that nothing lies between it and the scene's far side.
+    /// In the world. For a distant point: where light that comes from there enters the scene.
     pub position: Vec3,
     /// The unit geometric normal. For a distant point: the unit direction from it into the scene. Zero for a free point.
     pub normal: Vec3,
@@ -29,6 +29,7 @@ pub struct Point {
     /// Surface coordinates, for textures and profiles.
     pub uv: Vec2,
     /// How far along the normal a ray has to start to clear the rounding error of `position`; at least 0.
+    /// For a distant point: how far behind `position` things still stand in its light; infinite, or 0 for a camera's plane.
     pub offset: Real,
     /// What kind of place this is.
     pub place: Place,
@@ -50,7 +51,7 @@ impl Point {
     /// Infinitely far away; light from there travels along the unit vector `inward`.
     #[inline]
     pub fn distant(position: Vec3, inward: Vec3) -> Self {
-        Self { position, normal: inward, frame: Frame::from_z(inward), uv: Vec2::ZERO, offset: 0.0, place: Place::Distant }
+        Self { position, normal: inward, frame: Frame::from_z(inward), uv: Vec2::ZERO, offset: Real::INFINITY, place: Place::Distant }
     }
 
     /// Whether directions at this point are measured against a surface.
@@ -121,7 +122,7 @@ impl Ray {
         Self { origin: from.leave(direction), direction, t_max: Real::INFINITY, segment }
     }
 
-    /// The segment between two points, both ends moved off their surfaces; t runs from 0 to 1.
+    /// The segment between two points, both ends moved off their surfaces; t runs from 0 to 1 unless one of them is infinitely far away.
     #[inline]
     pub fn between(a: &Point, b: &Point, segment: Segment) -> Self {
         if a.place == Place::Distant && b.place != Place::Distant {
@@ -129,6 +130,9 @@ impl Ray {
         }
         let direction = if b.place == Place::Distant {
             let outward = -b.normal;
+            if b.offset == Real::INFINITY {
+                return Self::leaving(a, outward, segment);
+            }
             outward * dot(b.position - a.position, outward)
         } else {
             b.position - a.position

@@ -30,7 +30,8 @@ impl Orthographic {
         let position = self.position + self.axes[0] * at.x + self.axes[1] * at.y;
         Seen {
             raster,
-            point: Point::distant(position, self.axes[2]),
+            // Nothing behind the film plane is seen.
+            point: Point { offset: 0.0, ..Point::distant(position, self.axes[2]) },
             direction: self.axes[2],
             weight: Spectrum::ONE,
             end: EndDensity::Chance(Chance(1.0)),

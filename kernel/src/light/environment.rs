@@ -13,7 +13,7 @@ use crate::{
 /// A profile on the sphere of directions about the scene.
 #[derive(Clone, Copy, Debug)]
 pub struct EnvironmentLight<P> {
-    /// Of a sphere that holds the whole scene, the camera too.
+    /// Of a sphere that holds everything there is to light.
     pub center: Vec3,
     /// Of that sphere.
     pub radius: Real,
@@ -51,7 +51,7 @@ impl<P: Profile> Light for EnvironmentLight<P> {
         let inward = self.frame.to_world(out.direction);
         let density = EndDensity::Direction(out.profiled.pdf);
         Some(Illumination {
-            point: Point::distant(lit.position - inward * (2.0 * self.radius), inward),
+            point: Point::distant(lit.position, inward),
             direction: -inward,
             weight: out.profiled.radiance / out.profiled.pdf.0,
             density,

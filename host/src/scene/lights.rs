@@ -1,0 +1,335 @@
+//! Every light of a scene, and the choice among them.
+
+use std::sync::Arc;
+
+use bidir_kernel::{
+    Chance, Emission, EndDensity, Exit, Frame, Illumination, Light, Point, Real, Spectrum, Vec3,
+    light::{AreaLight, EnvironmentLight, PointLight},
+    math,
+    point::Place,
+    real::PI,
+};
+use bidir_standard as standard;
+
+use crate::scene::{description::EnvironmentImage, extent::LightExtent};
+
+/// A light's name: its index.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LightId(pub u32);
+
+/// A light as it is kept.
+#[derive(Clone, Debug)]
+pub enum LightSource {
+    /// On a shape.
+    Area(AreaLight<LightExtent, standard::Area>),
+    /// At a point, alike in every direction.
+    Point(PointLight<standard::Isotropic>),
+    /// At a point, in a cone.
+    Spot(PointLight<standard::Spot>),
+    /// Parallel.
+    Directional(standard::Directional),
+    /// From everywhere alike.
+    Constant(EnvironmentLight<standard::Constant>),
+    /// An image.
+    Envmap(EnvironmentLight<EnvironmentTables>),
+}
+
+/// An environment's image with its sampling tables.
+#[derive(Clone, Debug)]
+pub struct EnvironmentTables {
+    image: Arc<EnvironmentImage>,
+    /// The image, scaled.
+    texels: Vec<Spectrum>,
+    rows: Vec<Real>,
+    columns: Vec<Real>,
+}
+
+impl EnvironmentTables {
+    /// Tables of an image whose radiance is multiplied by `scale`; `None` if the image has no pixel.
+    pub fn new(image: Arc<EnvironmentImage>, scale: Real) -> Option<Self> {
+        let (width, height) = (image.width as usize, image.height as usize);
+        let texels: Vec<_> = image.texels.iter().map(|&texel| texel * scale).collect();
+        let sizes = standard::Envmap::sizes(width, height);
+        let (mut rows, mut columns) = (vec![0.0; sizes.rows], vec![0.0; sizes.columns]);
+        standard::Envmap::fill(width, height, &texels, &mut rows, &mut columns).then_some(Self { image, texels, rows, columns })
+    }
+
+    fn profile(&self) -> Option<standard::Envmap<'_>> {
+        standard::Envmap::new(self.image.width as usize, self.image.height as usize, &self.texels, &self.rows, &self.columns)
+    }
+
+    /// ∫ of the radiance over all directions, mean of the bands.
+    fn total(&self) -> Real {
+        let rows = self.image.height.saturating_sub(1).max(1) as Real;
+        let mean = |row: usize| self.texels[row * self.image.width as usize..][..self.image.width as usize].iter().map(|t| t.mean()).sum::<Real>();
+        let weighted: Real = (0..self.image.height as usize).map(|row| mean(row) * math::sin((row as Real / rows).min(1.0) * PI)).sum();
+        // A single row has no latitude to weigh by.
+        if self.image.height == 1 {
+            return 4.0 * PI * mean(0) / self.image.width as Real;
+        }
+        weighted / self.image.width as Real / rows * PI * 2.0 * PI
+    }
+}
+
+/// A light as a path asks it.
+#[derive(Clone, Copy, Debug)]
+pub enum SceneLight<'a> {
+    /// On a shape.
+    Area(AreaLight<&'a LightExtent, standard::Area>),
+    /// At a point, alike in every direction.
+    Point(PointLight<standard::Isotropic>),
+    /// At a point, in a cone.
+    Spot(PointLight<standard::Spot>),
+    /// Parallel.
+    Directional(standard::Directional),
+    /// From everywhere alike.
+    Constant(EnvironmentLight<standard::Constant>),
+    /// An image.
+    Envmap(EnvironmentLight<standard::Envmap<'a>>),
+}
+
+impl LightSource {
+    /// The light as a path asks it.
+    #[inline]
+    pub fn asked(&self) -> SceneLight<'_> {
+        match self {
+            Self::Area(light) => SceneLight::Area(AreaLight { extent: &light.extent, profile: light.profile }),
+            Self::Point(light) => SceneLight::Point(*light),
+            Self::Spot(light) => SceneLight::Spot(*light),
+            Self::Directional(light) => SceneLight::Directional(*light),
+            Self::Constant(light) => SceneLight::Constant(*light),
+            Self::Envmap(light) => match light.profile.profile() {
+                Some(profile) => SceneLight::Envmap(EnvironmentLight { center: light.center, radius: light.radius, frame: light.frame, profile }),
+                // Tables are only ever made to fit; an environment without any is black.
+                None => SceneLight::Constant(EnvironmentLight {
+                    center: light.center,
+                    radius: light.radius,
+                    frame: light.frame,
+                    profile: standard::Constant { radiance: Spectrum::BLACK },
+                }),
+            },
+        }
+    }
+
+    /// Power in W, mean of the bands: what a light walk chooses by.
+    pub fn power(&self) -> Real {
+        let disk = |radius: Real| PI * radius * radius;
+        match self {
+            Self::Area(light) => PI * light.extent.area() * light.profile.radiance.mean(),
+            Self::Point(light) => 4.0 * PI * light.profile.intensity.mean(),
+            Self::Spot(light) => {
+                let spot = &light.profile;
+                let half = 0.5 * (spot.cutoff + spot.beam_width);
+                2.0 * PI * (1.0 - math::cos(half)) * spot.intensity.mean()
+            }
+            Self::Directional(light) => disk(light.radius) * light.irradiance.mean(),
+            Self::Constant(light) => disk(light.radius) * 4.0 * PI * light.profile.radiance.mean(),
+            Self::Envmap(light) => disk(light.radius) * light.profile.total(),
+        }
+    }
+
+    /// About how much reaches `lit`, W/m², mean of the bands; 0 only where nothing does. What next event chooses by.
+    fn reaching(&self, lit: &Point) -> Real {
+        match self {
+            Self::Area(light) => light.profile.radiance.mean() * solid_angle(&light.extent, lit),
+            Self::Point(light) => light.profile.intensity.mean() / distance_squared(light.position, lit),
+            Self::Spot(light) => {
+                let toward = light.frame.to_local(lit.position - light.position);
+                let angle = math::atan2(math::sqrt(toward.x * toward.x + toward.y * toward.y), toward.z);
+                // A receiver on the rim of the cone may round to outside.
+                if angle > light.profile.cutoff * (1.0 + 1e-4) {
+                    0.0
+                } else {
+                    light.profile.intensity.mean() / distance_squared(light.position, lit)
+                }
+            }
+            Self::Directional(light) => light.irradiance.mean(),
+            Self::Constant(light) => PI * light.profile.radiance.mean(),
+            Self::Envmap(light) => 0.5 * light.profile.total(),
+        }
+    }
+}
+
+fn distance_squared(position: Vec3, lit: &Point) -> Real {
+    let d = position - lit.position;
+    math::dot(d, d).max(Real::MIN_POSITIVE)
+}
+
+/// About the solid angle under which `lit` sees a light's front; 0 only behind a flat one.
+fn solid_angle(extent: &LightExtent, lit: &Point) -> Real {
+    let flat = |center: Vec3, normal: Vec3, area: Real| {
+        let d = lit.position - center;
+        let height = math::dot(d, normal);
+        if height <= 0.0 {
+            return 0.0;
+        }
+        let squared = math::dot(d, d);
+        // Near by, a flat light fills at most the hemisphere, and its edges stand higher than its middle.
+        let cos = (height / math::sqrt(squared)).max(0.05);
+        2.0 * PI * (area * cos) / (area * cos + 2.0 * PI * squared)
+    };
+    let round = |center: Vec3, area: Real| 4.0 * PI * area / (area + 16.0 * PI * distance_squared(center, lit));
+    match extent {
+        LightExtent::Parallelogram(shape) => flat(shape.center, shape.normal, extent.area()),
+        LightExtent::Ellipse(shape) => flat(shape.center, shape.normal, extent.area()),
+        LightExtent::Ball(ball) => round(ball.center, extent.area()),
+        LightExtent::Tube(tube) => round(tube.base + tube.axis * 0.5, extent.area()),
+        LightExtent::Surface(surface) => round(surface.center, extent.area()),
+    }
+}
+
+macro_rules! of_light {
+    ($self:ident, $light:ident => $call:expr) => {
+        match $self {
+            SceneLight::Area($light) => $call,
+            SceneLight::Point($light) => $call,
+            SceneLight::Spot($light) => $call,
+            SceneLight::Directional($light) => $call,
+            SceneLight::Constant($light) => $call,
+            SceneLight::Envmap($light) => $call,
+        }
+    };
+}
+
+impl Light for SceneLight<'_> {
+    #[inline]
+    fn emit(&self, u: [Real; 4]) -> Option<Emission> {
+        of_light!(self, light => light.emit(u))
+    }
+
+    #[inline]
+    fn illuminate(&self, lit: &Point, u: [Real; 2]) -> Option<Illumination> {
+        of_light!(self, light => light.illuminate(lit, u))
+    }
+
+    #[inline]
+    fn emitted(&self, at: &Point, toward: Vec3) -> Exit {
+        of_light!(self, light => light.emitted(at, toward))
+    }
+
+    #[inline]
+    fn next_event_density(&self, at: &Point, lit: &Point) -> EndDensity {
+        of_light!(self, light => light.next_event_density(at, lit))
+    }
+}
+
+/// Up to this many lights, next event looks at each one from where it stands.
+const MOST_LOOKED_AT: usize = 16;
+
+/// The lights and the choice among them: for a light walk by power; for a receiver by what reaches it, or, among many lights, by power.
+#[derive(Clone, Debug, Default)]
+pub struct Lights {
+    sources: Vec<LightSource>,
+    /// Each one's share of the power.
+    shares: Vec<Real>,
+    /// Those shares, added up.
+    cumulative: Vec<Real>,
+    environment: Option<LightId>,
+}
+
+impl Lights {
+    /// Those of `sources` that shine at all; the others are dropped. The second value maps an index in `sources` to its light.
+    pub fn new(sources: Vec<LightSource>) -> (Self, Vec<Option<LightId>>) {
+        let powers: Vec<f64> = sources.iter().map(|source| f64::from(source.power())).collect();
+        let total: f64 = powers.iter().sum();
+        let mut lights = Self::default();
+        let mut ids = Vec::with_capacity(sources.len());
+        let count = sources.len() as f64;
+        let mut sum = 0.0;
+        for (source, power) in sources.into_iter().zip(powers) {
+            let shines = power > 0.0 && power.is_finite() && total.is_finite();
+            ids.push(shines.then(|| LightId(lights.sources.len() as u32)));
+            if !shines {
+                continue;
+            }
+            if matches!(source, LightSource::Constant(_) | LightSource::Envmap(_)) {
+                lights.environment = Some(LightId(lights.sources.len() as u32));
+            }
+            let before = sum as Real;
+            // A little for every light, so that one 12 decades weaker is still found.
+            sum += 0.99 * power / total + 0.01 / count;
+            lights.sources.push(source);
+            // The share is what the cumulative table gives, so that what is picked and what is asked agree to the bit.
+            lights.shares.push(sum as Real - before);
+            lights.cumulative.push(sum as Real);
+        }
+        (lights, ids)
+    }
+
+    /// All of them.
+    pub fn sources(&self) -> &[LightSource] {
+        &self.sources
+    }
+
+    /// The one that escaping rays land on.
+    #[inline]
+    pub fn environment(&self) -> Option<LightId> {
+        self.environment
+    }
+
+    /// The light `id`.
+    #[inline]
+    pub fn get(&self, id: LightId) -> SceneLight<'_> {
+        self.sources[id.0 as usize].asked()
+    }
+
+    /// Chooses a light for `lit`, or, without one, to start a light walk from.
+    #[inline]
+    pub fn pick(&self, lit: Option<&Point>, u: Real) -> Option<(LightId, Chance)> {
+        match lit {
+            Some(lit) if self.looks(lit) => self.pick_reaching(lit, u),
+            _ => {
+                let index = self.cumulative.partition_point(|&sum| sum <= u).min(self.sources.len().checked_sub(1)?);
+                Some((LightId(index as u32), Chance(self.shares[index])))
+            }
+        }
+    }
+
+    /// The chance that [`Lights::pick`] chooses `id`.
+    #[inline]
+    pub fn chance(&self, id: LightId, lit: Option<&Point>) -> Chance {
+        match lit {
+            Some(lit) if self.looks(lit) => {
+                if self.sources.len() == 1 {
+                    return Chance(1.0);
+                }
+                let total: Real = self.sources.iter().map(|source| source.reaching(lit)).sum();
+                Chance(if total > 0.0 { self.sources[id.0 as usize].reaching(lit) / total } else { 0.0 })
+            }
+            _ => Chance(self.shares[id.0 as usize]),
+        }
+    }
+
+    fn looks(&self, lit: &Point) -> bool {
+        self.sources.len() <= MOST_LOOKED_AT && lit.place != Place::Distant
+    }
+
+    fn pick_reaching(&self, lit: &Point, u: Real) -> Option<(LightId, Chance)> {
+        if self.sources.len() == 1 {
+            return Some((LightId(0), Chance(1.0)));
+        }
+        let mut reaching = [0.0; MOST_LOOKED_AT];
+        let mut total = 0.0;
+        for (slot, source) in reaching.iter_mut().zip(&self.sources) {
+            *slot = source.reaching(lit);
+            total += *slot;
+        }
+        let mut rest = u * total;
+        let mut last = None;
+        for (index, &reaching) in reaching[..self.sources.len()].iter().enumerate() {
+            if reaching > 0.0 {
+                last = Some((LightId(index as u32), Chance(reaching / total)));
+                if rest < reaching {
+                    return last;
+                }
+                rest -= reaching;
+            }
+        }
+        last
+    }
+}
+
+/// The frame of an environment: z is up (Mitsuba's local y), x is Mitsuba's local x.
+pub fn environment_frame(x: Vec3, y: Vec3, z: Vec3) -> Frame {
+    Frame { x, y: -z, z: y }
+}

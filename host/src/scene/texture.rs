@@ -1,0 +1,64 @@
+//! Looking a texture up.
+
+use bidir_kernel::{Real, Spectrum, Vec2, math};
+
+use crate::scene::description::{Bitmap, Texture, UvTransform, Wrap};
+
+impl UvTransform {
+    fn apply(&self, uv: Vec2) -> Vec2 {
+        let Self([[a, b, c], [d, e, f]]) = self;
+        Vec2::new(a * uv.x + b * uv.y + c, d * uv.x + e * uv.y + f)
+    }
+}
+
+impl Texture {
+    /// The texture's value at `uv`.
+    #[inline]
+    pub fn at(&self, uv: Vec2) -> Spectrum {
+        match self {
+            Self::Constant(value) => *value,
+            Self::Bitmap(bitmap) => bitmap.at(uv),
+            Self::Checkerboard { color0, color1, to_uv } => {
+                let uv = to_uv.apply(uv);
+                let half = |x: Real| x - math::floor(x) > 0.5;
+                if half(uv.x) == half(uv.y) { *color0 } else { *color1 }
+            }
+        }
+    }
+}
+
+impl Bitmap {
+    fn at(&self, uv: Vec2) -> Spectrum {
+        let uv = self.to_uv.apply(uv);
+        // v = 0 is the lower edge; rows are stored from the top.
+        let (x, y) = (uv.x * self.width as Real, (1.0 - uv.y) * self.height as Real);
+        if self.nearest {
+            return self.texel(math::floor(x) as i64, math::floor(y) as i64);
+        }
+        let (x, y) = (x - 0.5, y - 0.5);
+        let (left, top) = (math::floor(x), math::floor(y));
+        let (u, v) = (x - left, y - top);
+        let (i, j) = (left as i64, top as i64);
+        let upper = self.texel(i, j) * (1.0 - u) + self.texel(i + 1, j) * u;
+        let lower = self.texel(i, j + 1) * (1.0 - u) + self.texel(i + 1, j + 1) * u;
+        upper * (1.0 - v) + lower * v
+    }
+
+    fn texel(&self, x: i64, y: i64) -> Spectrum {
+        let x = wrapped(x, i64::from(self.width), self.wrap);
+        let y = wrapped(y, i64::from(self.height), self.wrap);
+        self.texels.get(y * self.width as usize + x).copied().unwrap_or(Spectrum::BLACK)
+    }
+}
+
+fn wrapped(i: i64, size: i64, wrap: Wrap) -> usize {
+    let i = match wrap {
+        Wrap::Repeat => i.rem_euclid(size),
+        Wrap::Clamp => i.clamp(0, size - 1),
+        Wrap::Mirror => {
+            let i = i.rem_euclid(2 * size);
+            i.min(2 * size - 1 - i)
+        }
+    };
+    i as usize
+}
