@@ -1,0 +1,151 @@
+//! From sums to pictures, and how far they may be trusted.
+
+use serde::Serialize;
+
+use crate::image::Image;
+
+use super::{Film, band::Sums, lock};
+
+/// The share of pixels with the largest relative errors that a trimmed mean leaves out.
+pub const TRIM: f64 = 0.001;
+/// Keeps a relative squared error finite in black pixels; relMSE's usual ε.
+const EPSILON: f64 = 0.01;
+
+/// The render's own estimate of its error, from its two halves.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Noise {
+    /// Mean over pixels of the estimated variance over (value² + 0.01), without the 0.1 % largest.
+    pub relmse: f64,
+    /// Mean over pixels and bands of the estimated variance.
+    pub mse: f64,
+}
+
+/// What turns sums into values.
+struct Scale {
+    /// pixels / N.
+    light: f64,
+    /// 1 / ∫ h within the window, per column and per row.
+    columns: Vec<f64>,
+    rows: Vec<f64>,
+}
+
+impl Film {
+    /// The picture: samples of both halves, splats divided by the number of light walks, of which each sample made that many.
+    /// A pixel that no sample reached is black.
+    pub fn develop(&self, light_walks_per_sample: f64) -> Image {
+        let samples = lock(&self.tally).samples;
+        let scale = self.scale((samples[0] + samples[1]) as f64 * light_walks_per_sample);
+        let mut image = Image::black(self.layout.crop.width, self.layout.crop.height);
+        self.each(|index, column, row, [even, odd]| {
+            let value = scale.value(&(even + odd), column, row);
+            image.pixels[index] = value.map(|v| v as f32);
+        });
+        image
+    }
+
+    /// The pictures that samples of even and of odd number make on their own; independent unless the sampler ties samples together.
+    pub fn halves(&self, light_walks_per_sample: f64) -> [Image; 2] {
+        let samples = lock(&self.tally).samples;
+        let scales = samples.map(|n| self.scale(n as f64 * light_walks_per_sample));
+        let mut images = [0, 1].map(|_| Image::black(self.layout.crop.width, self.layout.crop.height));
+        self.each(|index, column, row, sums| {
+            for ((image, scale), sum) in images.iter_mut().zip(&scales).zip(sums) {
+                image.pixels[index] = scale.value(&sum, column, row).map(|v| v as f32);
+            }
+        });
+        images
+    }
+
+    /// How noisy [`Film::develop`] is; `None` before there are two samples.
+    ///
+    /// With m and n samples in the halves, whose pixel values are a and b, Var(a − b) = σ² (1/m + 1/n) and the picture's variance is
+    /// σ² / (m + n); so (a − b)² m n / (m + n)² estimates it without bias if samples are independent, and from above where the
+    /// sampler stratifies them. relMSE divides it by the squared value of the picture itself: it is low while few pixels have seen
+    /// the light that matters, like every estimate from the samples alone.
+    pub fn noise(&self, light_walks_per_sample: f64) -> Option<Noise> {
+        let samples = lock(&self.tally).samples.map(|n| n as f64);
+        let total = samples[0] + samples[1];
+        if samples.contains(&0.0) {
+            return None;
+        }
+        let share = samples[0] * samples[1] / (total * total);
+        let scales = samples.map(|n| self.scale(n * light_walks_per_sample));
+        let whole = self.scale(total * light_walks_per_sample);
+        let mut relative = Vec::with_capacity(self.layout.pixels());
+        let mut sum = 0.0;
+        self.each(|_, column, row, [even, odd]| {
+            let a = scales[0].value(&even, column, row);
+            let b = scales[1].value(&odd, column, row);
+            let value = whole.value(&(even + odd), column, row);
+            let variance: [f64; 3] = std::array::from_fn(|i| (a[i] - b[i]) * (a[i] - b[i]) * share);
+            sum += variance.iter().sum::<f64>() / 3.0;
+            relative.push(variance.iter().zip(value).map(|(v, m)| v / (m * m + EPSILON)).sum::<f64>() / 3.0);
+        });
+        let pixels = relative.len() as f64;
+        Some(Noise { relmse: trimmed_mean(&mut relative, TRIM), mse: sum / pixels })
+    }
+
+    fn scale(&self, light_walks: f64) -> Scale {
+        let crop = &self.layout.crop;
+        let reciprocals = |length| self.layout.masses(length).into_iter().map(|m| if m > 0.0 { 1.0 / m } else { 0.0 }).collect();
+        Scale {
+            light: if light_walks > 0.0 { self.layout.pixels() as f64 / light_walks } else { 0.0 },
+            columns: reciprocals(crop.width),
+            rows: reciprocals(crop.height),
+        }
+    }
+
+    /// Calls `visit(index, column, row, sums of both halves)` for each pixel, row by row.
+    fn each(&self, mut visit: impl FnMut(usize, usize, usize, [PixelSums; 2])) {
+        let width = self.layout.crop.width as usize;
+        for strip in &self.bands {
+            let band = lock(&strip.sums);
+            let start = band.rect.y0 as usize * width;
+            for i in 0..band.rect.width() * band.rect.height() {
+                let index = start + i;
+                visit(index, index % width, index / width, [PixelSums::of(&band.halves[0], i), PixelSums::of(&band.halves[1], i)]);
+            }
+        }
+    }
+}
+
+/// The mean without the `trim` share of largest values (rounded up, but never all of them). Reorders `values`; 0 for none.
+pub fn trimmed_mean(values: &mut [f64], trim: f64) -> f64 {
+    values.sort_unstable_by(f64::total_cmp);
+    let cut = (values.len() as f64 * trim).ceil() as usize;
+    let kept = values.len().saturating_sub(cut).max(1).min(values.len());
+    values[..kept].iter().sum::<f64>() / kept.max(1) as f64
+}
+
+#[derive(Clone, Copy)]
+struct PixelSums {
+    camera: [f64; 4],
+    light: [f64; 3],
+}
+
+impl PixelSums {
+    fn of(sums: &Sums, index: usize) -> Self {
+        Self { camera: sums.camera[index], light: sums.light.get(index).copied().unwrap_or_default() }
+    }
+}
+
+impl std::ops::Add for PixelSums {
+    type Output = Self;
+    fn add(self, other: Self) -> Self {
+        Self {
+            camera: std::array::from_fn(|i| self.camera[i] + other.camera[i]),
+            light: std::array::from_fn(|i| self.light[i] + other.light[i]),
+        }
+    }
+}
+
+impl Scale {
+    fn value(&self, sums: &PixelSums, column: usize, row: usize) -> [f64; 3] {
+        let light = self.light * self.columns[column] * self.rows[row];
+        let weight = sums.camera[3];
+        std::array::from_fn(|i| {
+            let camera = if weight > 0.0 { sums.camera[i] / weight } else { 0.0 };
+            camera + sums.light[i] * light
+        })
+    }
+}
