@@ -1,1 +1,7 @@
-fn main() {}
+//! The `bidir` program.
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    bidir::cli::main()
+}

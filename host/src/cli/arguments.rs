@@ -1,0 +1,144 @@
+//! What can be said on the command line.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand};
+
+use crate::plan::Named;
+
+/// A bidirectional path tracer for Mitsuba 3 scenes.
+#[derive(Debug, Parser)]
+#[command(name = "bidir", version, about)]
+pub struct Arguments {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// The commands.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Render a scene to an image; without a scene, one that comes with the program
+    Render(Render),
+    /// Say what a scene holds, what would be simulated, and what this program reads
+    Explain(Explain),
+    /// Write every technique (s,t) as an image of its own, weighted and unweighted, and all of them as a pyramid
+    Techniques(Techniques),
+    /// Hold an image against a reference: relMSE, SMAPE, bias, worst block
+    Compare(Compare),
+}
+
+/// Where a scene comes from.
+#[derive(Debug, Args)]
+pub struct SceneArguments {
+    /// Give a value to a $name of the scene
+    #[arg(long = "define", value_name = "NAME=VALUE", value_parser = definition)]
+    pub defines: Vec<(String, String)>,
+    /// The longest path, in segments, whatever the scene says; -1 is unlimited
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(i64).range(-1..i64::from(u32::MAX)))]
+    pub max_depth: Option<i64>,
+}
+
+/// `bidir render`
+#[derive(Debug, Args)]
+pub struct Render {
+    /// A Mitsuba 3 scene
+    pub scene: Option<PathBuf>,
+    /// The image to write: .exr, .hdr or .png
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// Which techniques run
+    #[arg(long, value_enum, default_value_t)]
+    pub integrator: Named,
+    /// Run the techniques that this file says
+    #[arg(long, value_name = "FILE.json", conflicts_with = "integrator")]
+    pub plan: Option<PathBuf>,
+    /// Samples per pixel
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub spp: Option<u32>,
+    /// Render for about this long
+    #[arg(long, value_name = "SECONDS", value_parser = positive, conflicts_with = "spp")]
+    pub time: Option<f64>,
+    /// Render until the estimated relMSE is at most this
+    #[arg(long, value_name = "RELMSE", value_parser = positive, conflicts_with_all = ["spp", "time"])]
+    pub error: Option<f64>,
+    #[command(flatten)]
+    pub from: SceneArguments,
+    /// Of the random numbers
+    #[arg(long, value_name = "N")]
+    pub seed: Option<u64>,
+    /// Render threads; as many as the machine has, unless told
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096))]
+    pub threads: Option<u32>,
+    /// Write what was done, and what it took, as JSON
+    #[arg(long, value_name = "FILE.json")]
+    pub stats: Option<PathBuf>,
+    /// No progress; warnings stay
+    #[arg(long)]
+    pub quiet: bool,
+}
+
+/// `bidir explain`
+#[derive(Debug, Args)]
+pub struct Explain {
+    /// A Mitsuba 3 scene; without one, what this program reads is listed
+    pub scene: Option<PathBuf>,
+    #[command(flatten)]
+    pub from: SceneArguments,
+    /// As JSON
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `bidir techniques`
+#[derive(Debug, Args)]
+pub struct Techniques {
+    /// A Mitsuba 3 scene
+    pub scene: PathBuf,
+    /// The folder to write to
+    #[arg(short, long, value_name = "DIR")]
+    pub output: PathBuf,
+    /// Samples per pixel
+    #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..))]
+    pub spp: u32,
+    /// The longest paths to show
+    #[arg(long, value_name = "N", default_value_t = 6, value_parser = clap::value_parser!(u32).range(1..=64))]
+    pub longest: u32,
+    #[command(flatten)]
+    pub from: SceneArguments,
+    /// Of the random numbers
+    #[arg(long, value_name = "N")]
+    pub seed: Option<u64>,
+    /// Render threads; as many as the machine has, unless told
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096))]
+    pub threads: Option<u32>,
+    /// No progress
+    #[arg(long)]
+    pub quiet: bool,
+}
+
+/// `bidir compare`
+#[derive(Debug, Args)]
+pub struct Compare {
+    /// The image
+    pub image: PathBuf,
+    /// The reference
+    pub reference: PathBuf,
+    /// As JSON
+    #[arg(long)]
+    pub json: bool,
+}
+
+fn definition(text: &str) -> Result<(String, String), String> {
+    match text.split_once('=') {
+        Some((name, value)) if !name.is_empty() => Ok((name.to_owned(), value.to_owned())),
+        _ => Err("write it as NAME=VALUE".to_owned()),
+    }
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
+        _ => Err("give a number above 0".to_owned()),
+    }
+}

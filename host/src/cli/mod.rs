@@ -1,0 +1,57 @@
+//! The command line.
+
+mod arguments;
+mod compare;
+mod explain;
+mod interrupt;
+pub mod progress;
+mod render;
+mod stats;
+mod techniques;
+
+use std::process::ExitCode;
+
+use clap::{Parser, error::ErrorKind};
+
+use crate::error::Error;
+use arguments::{Arguments, Command};
+
+/// How a command ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Outcome {
+    /// All right: exit status 0.
+    Done,
+    /// Ctrl-C; what was rendered is saved: 130.
+    Interrupted,
+}
+
+/// Runs the command line of this process.
+pub fn main() -> ExitCode {
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(error) => {
+            let asked = matches!(error.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion);
+            // Nothing is left to say if not even this can be printed.
+            let _ = error.print();
+            return ExitCode::from(if asked { 0 } else { 2 });
+        }
+    };
+    let outcome = match &arguments.command {
+        Command::Render(render) => render::run(render),
+        Command::Explain(explain) => explain::run(explain),
+        Command::Techniques(techniques) => techniques::run(techniques),
+        Command::Compare(compare) => compare::run(compare),
+    };
+    match outcome {
+        Ok(Outcome::Done) => ExitCode::SUCCESS,
+        Ok(Outcome::Interrupted) => ExitCode::from(130),
+        Err(error) => {
+            complain(&error);
+            ExitCode::from(1)
+        }
+    }
+}
+
+fn complain(error: &Error) {
+    eprintln!("error: {error}");
+}

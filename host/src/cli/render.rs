@@ -1,0 +1,173 @@
+//! `bidir render`.
+
+use std::{
+    path::{Path, PathBuf},
+    time::{Duration, Instant},
+};
+
+use crate::{
+    cli::{
+        Outcome,
+        arguments::{Render, SceneArguments},
+        interrupt,
+        progress::{Goal, Progress, Verbosity},
+        stats::{CpuSeconds, Geometry, Seconds, Stats},
+    },
+    error::Result,
+    film::{Film, Noise},
+    image::write::{self, Layers},
+    load,
+    plan::Plan,
+    render::{self, Job, Status, Target},
+    scene::{Scene, description::Description},
+};
+
+/// The scene of a `render` without one.
+const WELCOME: &str = include_str!("../../../examples/scenes/welcome.xml");
+
+/// Reads a scene, or the one that comes with the program, and says on standard error what the user should know of it.
+pub(super) fn read(scene: Option<&Path>, from: &SceneArguments) -> Result<Description> {
+    let loaded = match scene {
+        Some(path) => load::load(path, &from.defines)?,
+        None => load::load_str(WELCOME, Path::new("welcome.xml"), None, &from.defines)?,
+    };
+    for warning in &loaded.warnings {
+        eprintln!("warning: {warning}");
+    }
+    let mut description = loaded.description;
+    if let Some(depth) = from.max_depth {
+        description.integrator.max_depth = u32::try_from(depth).ok();
+    }
+    Ok(description)
+}
+
+/// As many threads as asked for, or as the machine has.
+pub(super) fn thread_count(asked: Option<u32>) -> usize {
+    asked.map_or_else(|| std::thread::available_parallelism().map_or(1, usize::from), |threads| threads as usize)
+}
+
+fn default_output(scene: Option<&Path>) -> PathBuf {
+    match scene.and_then(Path::file_stem) {
+        Some(stem) => PathBuf::from(stem).with_extension("exr"),
+        None => PathBuf::from("welcome.png"),
+    }
+}
+
+pub(super) fn run(arguments: &Render) -> Result<Outcome> {
+    let start = Instant::now();
+    let mut seconds = Seconds::default();
+    let output = arguments.output.clone().unwrap_or_else(|| default_output(arguments.scene.as_deref()));
+    write::check_writable(&output)?;
+    let plan = match &arguments.plan {
+        Some(path) => Plan::read(path)?,
+        None => arguments.integrator.plan(),
+    };
+
+    let description = read(arguments.scene.as_deref(), &arguments.from)?;
+    seconds.load = start.elapsed().as_secs_f64();
+    let film = Film::new(&description.film)?;
+    let scene = Scene::new(&description)?;
+    seconds.build = start.elapsed().as_secs_f64() - seconds.load;
+    if scene.degenerate() > 0 {
+        eprintln!("warning: {} shapes or triangles without area were dropped", scene.degenerate());
+    }
+
+    let target = target(arguments, &description);
+    let job = Job {
+        strategy: plan.strategy(&description.integrator),
+        seed: arguments.seed.unwrap_or(description.seed),
+        threads: thread_count(arguments.threads),
+        target,
+        width: description.film.width,
+    };
+    let light_walks = if job.strategy.techniques.light_walk() { 1.0 } else { 0.0 };
+    let mut progress = progress(target, arguments.quiet);
+    let status = render::render(&scene, &film, &job, &interrupt::flag(), |status| {
+        let error = film.noise(light_walks).map(|noise| noise.relmse);
+        progress.update(status.samples, status.elapsed, error);
+        error
+    });
+    progress.finish();
+    seconds.render = status.elapsed.as_secs_f64();
+
+    save(&output, &film, light_walks, &status, job.seed)?;
+    if film.refused() > 0 {
+        eprintln!("warning: {} contributions were not finite and were refused", film.refused());
+    }
+    seconds.total = start.elapsed().as_secs_f64();
+    if let Some(path) = &arguments.stats {
+        stats(arguments, &description, &scene, &plan, &job, &status, seconds, film.refused(), film.noise(light_walks)).write(path)?;
+    }
+    if !arguments.quiet {
+        let Status { samples, elapsed, .. } = status;
+        println!("{samples} samples per pixel in {:.1} s: {}", elapsed.as_secs_f64(), output.display());
+    } else {
+        println!("{}", output.display());
+    }
+    Ok(if status.interrupted { Outcome::Interrupted } else { Outcome::Done })
+}
+
+fn target(arguments: &Render, description: &Description) -> Target {
+    match (arguments.time, arguments.error) {
+        (Some(seconds), _) => Target::Time(Duration::from_secs_f64(seconds.min(1e9))),
+        (_, Some(error)) => Target::Error(error),
+        _ => Target::Samples(arguments.spp.unwrap_or(description.samples_per_pixel)),
+    }
+}
+
+fn progress(target: Target, quiet: bool) -> Progress {
+    let goal = match target {
+        Target::Samples(samples) => Goal::Samples(samples),
+        Target::Time(time) => Goal::Time(time),
+        Target::Error(error) => Goal::Error(error),
+    };
+    Progress::new(goal, if quiet { Verbosity::Quiet } else { Verbosity::Shown })
+}
+
+fn save(output: &Path, film: &Film, light_walks: f64, status: &Status, seed: u64) -> Result<()> {
+    let image = film.develop(light_walks);
+    let note = |name: &str, value: String| (name.to_owned(), value);
+    let notes = vec![
+        note("renderer", format!("bidir {}", env!("CARGO_PKG_VERSION"))),
+        note("spp", status.samples.to_string()),
+        note("seed", seed.to_string()),
+    ];
+    write::write(output, &Layers { image: &image, named: Vec::new(), notes })
+}
+
+#[expect(clippy::too_many_arguments, reason = "the statistics are about everything there is")]
+fn stats(
+    arguments: &Render,
+    description: &Description,
+    scene: &Scene,
+    plan: &Plan,
+    job: &Job,
+    status: &Status,
+    seconds: Seconds,
+    refused: u64,
+    noise: Option<Noise>,
+) -> Stats {
+    let crop = description.film.crop;
+    let camera_paths = u64::from(status.samples) * u64::from(crop.width) * u64::from(crop.height);
+    let tree = scene.build_stats();
+    Stats {
+        spp: status.samples,
+        width: crop.width,
+        height: crop.height,
+        seconds,
+        cpu_seconds: CpuSeconds { render: status.cpu.as_secs_f64() },
+        camera_paths,
+        light_paths: if job.strategy.techniques.light_walk() { camera_paths } else { 0 },
+        rays: status.rays,
+        refused,
+        quarantined: 0,
+        estimated_error: noise.map(|noise| noise.relmse),
+        integrator: if arguments.plan.is_some() { "plan" } else { arguments.integrator.name() },
+        plan: *plan,
+        threads: job.threads,
+        seed: job.seed,
+        geometry: Geometry { primitives: tree.primitives, degenerate: scene.degenerate(), bytes: tree.bytes },
+        version: env!("CARGO_PKG_VERSION"),
+        interrupted: status.interrupted,
+    }
+}

@@ -1,0 +1,155 @@
+//! Rendering: samples of a scene onto a film, pass by pass.
+//!
+//! A pass is a whole number of samples for every pixel. What is decided while rendering (to stop, to report) is decided between passes,
+//! so that an image depends on scene, seed, samples and plan alone.
+
+mod passes;
+
+use std::{
+    sync::atomic::{AtomicBool, Ordering},
+    time::{Duration, Instant},
+};
+
+use bidir_kernel::{LightVertex, Strategy, Vec2, sample, sampler::Independent};
+use bidir_kernel::{Sampler, Walk};
+
+use crate::{
+    film::{Exposure, Store},
+    scene::{
+        Scene,
+        view::{RayCounts, View},
+    },
+};
+
+pub use passes::pass_end;
+
+/// The longest path that stored light vertices are kept for where the scene sets no limit; longer ones are left to s = 0 and s = 1.
+pub const LONGEST_JOINED: u32 = 64;
+
+/// When a render is done.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Target {
+    /// After this many samples per pixel.
+    Samples(u32),
+    /// After this much wall-clock time, at the end of a pass.
+    Time(Duration),
+    /// Once the estimated relMSE is at most this.
+    Error(f64),
+}
+
+/// What to do.
+#[derive(Clone, Copy, Debug)]
+pub struct Job {
+    /// Techniques and depths.
+    pub strategy: Strategy,
+    /// Of the random numbers.
+    pub seed: u64,
+    /// At least 1.
+    pub threads: usize,
+    /// When to stop.
+    pub target: Target,
+    /// Pixels in a row of the whole image: a pixel's numbers do not depend on the crop window.
+    pub width: u32,
+}
+
+/// Where a render stands, or ended.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Status {
+    /// Samples of every pixel that are on the film.
+    pub samples: u32,
+    /// Wall-clock time spent.
+    pub elapsed: Duration,
+    /// CPU time of the render threads, added up.
+    pub cpu: Duration,
+    /// Rays cast.
+    pub rays: RayCounts,
+    /// Whether it was interrupted.
+    pub interrupted: bool,
+}
+
+/// Renders onto an empty `film`. After each pass, `report` is told where the render stands and answers the estimated error,
+/// where it knows one; raising `interrupt` ends the render after the sample under way.
+pub fn render<S: Store>(scene: &Scene, film: &S, job: &Job, interrupt: &AtomicBool, mut report: impl FnMut(&Status) -> Option<f64>) -> Status {
+    let start = Instant::now();
+    let mut status = Status::default();
+    let last = match job.target {
+        Target::Samples(samples) => samples,
+        Target::Time(_) | Target::Error(_) => u32::MAX,
+    };
+    while status.samples < last {
+        let end = pass_end(status.samples).min(last);
+        let Some(claimed) = run(scene, film, job, end, Some(interrupt), &mut status) else { return status };
+        if claimed < end || interrupt.load(Ordering::Relaxed) {
+            // Finish the sample that some pixels have already.
+            run(scene, film, job, claimed, None, &mut status);
+            status.samples = claimed;
+            status.interrupted = true;
+        } else {
+            status.samples = end;
+        }
+        status.elapsed = start.elapsed();
+        let error = report(&status);
+        let done = match job.target {
+            Target::Samples(_) => false,
+            Target::Time(limit) => status.elapsed >= limit,
+            Target::Error(goal) => error.is_some_and(|error| error <= goal),
+        };
+        if done || status.interrupted {
+            break;
+        }
+    }
+    status
+}
+
+/// Renders every unit whose sample is below `end`; returns the samples of which a unit was begun. `None` if no thread could do any work.
+fn run<S: Store>(scene: &Scene, film: &S, job: &Job, end: u32, interrupt: Option<&AtomicBool>, status: &mut Status) -> Option<u32> {
+    let workers: Vec<Option<Worked>> = std::thread::scope(|scope| {
+        let workers: Vec<_> = (0..job.threads.max(1)).map(|_| scope.spawn(|| work(scene, film, job, end, interrupt))).collect();
+        workers.into_iter().map(|worker| worker.join().ok()).collect()
+    });
+    let mut begun = status.samples;
+    for worked in workers {
+        let worked = worked?;
+        begun = begun.max(worked.begun);
+        status.cpu += worked.cpu;
+        status.rays += worked.rays;
+    }
+    Some(begun)
+}
+
+/// What one thread did.
+struct Worked {
+    begun: u32,
+    cpu: Duration,
+    rays: RayCounts,
+}
+
+fn work<S: Store>(scene: &Scene, film: &S, job: &Job, end: u32, interrupt: Option<&AtomicBool>) -> Worked {
+    let clock = cpu_time::ThreadTime::now();
+    let view = View::new(scene);
+    let mut light_path = light_path(&job.strategy);
+    let mut begun = 0;
+    while !interrupt.is_some_and(|interrupt| interrupt.load(Ordering::Relaxed)) {
+        let Some(mut buffer) = film.claim(end) else { break };
+        let unit = buffer.unit();
+        begun = begun.max(unit.sample + 1);
+        for (x, y) in film.pixels(&unit) {
+            let pixel = u64::from(y) * u64::from(job.width) + u64::from(x);
+            let mut numbers = Independent::new(job.seed, pixel, u64::from(unit.sample));
+            numbers.seek(Walk::Camera, 0);
+            let [dx, dy] = numbers.next_pair();
+            let raster = Vec2::new(x as f32 + dx, y as f32 + dy);
+            buffer.begin(raster);
+            sample(&view, &job.strategy, &mut numbers, raster, &mut light_path, &mut buffer);
+            buffer.end();
+        }
+        film.commit(buffer);
+    }
+    Worked { begun, cpu: clock.elapsed(), rays: view.rays() }
+}
+
+/// Storage for the light walk's vertices: enough for the longest path that is joined.
+fn light_path<'s>(strategy: &Strategy) -> Vec<Option<LightVertex<'s, View<'s>>>> {
+    let length = strategy.max_depth.min(LONGEST_JOINED).saturating_sub(1);
+    (0..length).map(|_| None).collect()
+}

@@ -1,0 +1,21 @@
+//! Where passes end.
+
+/// The samples per pixel at the end of the pass that begins with `samples`: 1, 2, 4, … 32, then a quarter more each time.
+/// A render that stops at the end of any pass is the one that was asked for that many samples.
+pub fn pass_end(samples: u32) -> u32 {
+    if samples < 32 { (samples + 1).next_power_of_two().max(1) } else { samples.saturating_add(samples / 4) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::pass_end;
+
+    #[test]
+    fn passes_grow_and_end() {
+        let mut ends = vec![0];
+        while *ends.last().unwrap_or(&0) < 100 {
+            ends.push(pass_end(*ends.last().unwrap_or(&0)));
+        }
+        assert_eq!(ends, [0, 1, 2, 4, 8, 16, 32, 40, 50, 62, 77, 96, 120]);
+    }
+}
