@@ -45,7 +45,7 @@ use std::sync::{Arc, Mutex};
 use crate::{error::Result, scene::description::FilmSettings};
 
 pub use buffer::{Exposure, TileBuffer};
-pub use develop::{Noise, TRIM, trimmed_mean};
+pub use develop::Noise;
 pub use unit::{TILE, Unit, WINDOW};
 
 use band::Band;
