@@ -1,0 +1,3 @@
+//! What the user sees of a run.
+
+pub mod progress;
