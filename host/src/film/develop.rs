@@ -2,12 +2,13 @@
 
 use serde::Serialize;
 
-use crate::image::Image;
+use crate::image::{
+    Image,
+    trim::{TRIM, trimmed_mean},
+};
 
 use super::{Film, band::Sums, lock};
 
-/// The share of pixels with the largest relative errors that a trimmed mean leaves out.
-pub const TRIM: f64 = 0.001;
 /// Keeps a relative squared error finite in black pixels; relMSE's usual ε.
 const EPSILON: f64 = 0.01;
 
@@ -107,14 +108,6 @@ impl Film {
             }
         }
     }
-}
-
-/// The mean without the `trim` share of largest values (rounded up, but never all of them). Reorders `values`; 0 for none.
-pub fn trimmed_mean(values: &mut [f64], trim: f64) -> f64 {
-    values.sort_unstable_by(f64::total_cmp);
-    let cut = (values.len() as f64 * trim).ceil() as usize;
-    let kept = values.len().saturating_sub(cut).max(1).min(values.len());
-    values[..kept].iter().sum::<f64>() / kept.max(1) as f64
 }
 
 #[derive(Clone, Copy)]

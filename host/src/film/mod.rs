@@ -37,6 +37,7 @@ mod buffer;
 mod develop;
 pub mod filter;
 mod layout;
+mod pyramid;
 mod sequencer;
 mod unit;
 
@@ -45,7 +46,8 @@ use std::sync::{Arc, Mutex};
 use crate::{error::Result, scene::description::FilmSettings};
 
 pub use buffer::{Exposure, TileBuffer};
-pub use develop::{Noise, TRIM, trimmed_mean};
+pub use develop::Noise;
+pub use pyramid::{Pyramid, PyramidBuffer};
 pub use unit::{TILE, Unit, WINDOW};
 
 use band::Band;

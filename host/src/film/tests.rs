@@ -16,7 +16,7 @@ const CROPS: [Crop; 4] = [
 ];
 
 fn film(crop: Crop, filter: Filter) -> Film {
-    Film::new(&FilmSettings { width: 40, height: 70, crop, filter }).unwrap()
+    Film::new(&FilmSettings { width: 40, height: 70, crop, filter }).expect("a window inside the image")
 }
 
 fn light(value: [f32; 3]) -> Contribution {
@@ -174,7 +174,8 @@ fn a_crop_is_the_full_image_cropped() {
             });
         }
         let (full, part) = (full.develop(1.0), part.develop(1.0));
-        let reach = layout::Layout::new(&FilmSettings { width: 40, height: 70, crop, filter }).unwrap().profile.reach();
+        let reach =
+            layout::Layout::new(&FilmSettings { width: 40, height: 70, crop, filter }).expect("a window inside the image").profile.reach();
         for y in reach..crop.height - reach {
             for x in reach..crop.width - reach {
                 let (a, b) = (part.at(x, y)[0], full.at(x + crop.x, y + crop.y)[0]);
@@ -197,7 +198,7 @@ fn the_halves_estimate_the_variance_without_bias() {
             buffer.splat(stratum(pixel, 0, 1), light([1.0; 3]));
             buffer.end();
         });
-        let noise = film.noise(1.0).unwrap();
+        let noise = film.noise(1.0).expect("two samples");
         assert!((noise.mse * f64::from(n) - 1.0).abs() < 4.0 * 0.027 / 3f64.sqrt() * 1.5, "{n}: {}", noise.mse);
     }
     assert_eq!(film(CROPS[0], Filter::Box).noise(1.0), None);

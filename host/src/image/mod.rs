@@ -1,5 +1,8 @@
 //! Images in memory, and the files they come from and go to.
 
+pub mod trim;
+pub mod write;
+
 /// A picture: linear R, G, B with the sRGB primaries, rows from the top.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Image {

@@ -1,0 +1,188 @@
+//! Writes pictures. A file is either whole or not there.
+
+use std::{
+    ffi::OsString,
+    fs::{self, File, OpenOptions},
+    io::{self, BufWriter, Seek, Write},
+    path::{Path, PathBuf},
+    process,
+};
+
+use bidir_kernel::math;
+use exr::prelude as ex;
+use image::{ExtendedColorType, ImageEncoder, Rgb, codecs};
+
+use super::Image;
+use crate::error::{Error, Result};
+
+/// What goes into a file.
+#[derive(Clone, Debug)]
+pub struct Layers<'a> {
+    /// The picture: an EXR's unnamed layer.
+    pub image: &'a Image,
+    /// Others of the same size, as channels `name.R`, `name.G`, `name.B`; EXR only.
+    pub named: Vec<(String, &'a Image)>,
+    /// What a reader should know (samples per pixel, seed, version), as `name=value` words in an EXR's `comments`.
+    /// Other formats leave it out.
+    pub notes: Vec<(String, String)>,
+}
+
+impl<'a> From<&'a Image> for Layers<'a> {
+    fn from(image: &'a Image) -> Self {
+        Self { image, named: Vec::new(), notes: Vec::new() }
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Format {
+    Exr,
+    Hdr,
+    Png,
+}
+
+/// Whether [`write`] could write there: the extension is known, and the folder takes a file. Leaves nothing behind.
+/// To be asked before a render starts.
+pub fn check_writable(path: &Path) -> Result<()> {
+    format_of(path)?;
+    Partial::create(path).map(drop)
+}
+
+/// Writes by extension: `.exr` linear in float32; `.hdr` linear in RGBE; `.png` in 8-bit sRGB, clamped to 0 … 1 and not dithered.
+/// An existing file is replaced once the new one is whole.
+pub fn write(path: &Path, layers: &Layers) -> Result<()> {
+    let format = format_of(path)?;
+    check_layers(path, format, layers)?;
+    let mut partial = Partial::create(path)?;
+    let mut out = BufWriter::new(&mut partial.file);
+    match format {
+        Format::Exr => write_exr(&mut out, layers),
+        Format::Hdr => write_hdr(&mut out, layers.image),
+        Format::Png => write_png(&mut out, layers.image),
+    }
+    .and_then(|()| out.flush().map_err(|e| e.to_string()))
+    .map_err(|cause| Error::in_file(path, format!("the image cannot be written: {cause}"), "free some space, or choose another place"))?;
+    drop(out);
+    partial.finish(path)
+}
+
+fn format_of(path: &Path) -> Result<Format> {
+    let extension = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
+    match extension.as_deref() {
+        Some("exr") => Ok(Format::Exr),
+        Some("hdr") => Ok(Format::Hdr),
+        Some("png") => Ok(Format::Png),
+        Some(other) => Err(Error::in_file(path, format!("images of type .{other} cannot be written"), "choose .exr, .hdr or .png")),
+        None => Err(Error::in_file(path, "an image's name needs an extension", "choose .exr, .hdr or .png")),
+    }
+}
+
+fn check_layers(path: &Path, format: Format, layers: &Layers) -> Result<()> {
+    if format != Format::Exr && !layers.named.is_empty() {
+        return Err(Error::in_file(path, "only an EXR holds more than one layer", "choose .exr"));
+    }
+    let Image { width, height, .. } = *layers.image;
+    let images = || std::iter::once(layers.image).chain(layers.named.iter().map(|(_, image)| *image));
+    if width == 0 || height == 0 || images().any(|i| i.pixels.len() != width as usize * height as usize) {
+        return Err(Error::in_file(path, "an image needs pixels, and its layers one size", "this is a bug; please report it"));
+    }
+    if let Some((name, image)) = layers.named.iter().find(|(_, image)| (image.width, image.height) != (width, height)) {
+        let thing = format!("layer {name} has {}×{} pixels, the image {width}×{height}", image.width, image.height);
+        return Err(Error::in_file(path, thing, "this is a bug; please report it"));
+    }
+    Ok(())
+}
+
+/// A file beside the one to be written, which vanishes unless it is finished.
+struct Partial {
+    file: File,
+    path: PathBuf,
+}
+
+impl Partial {
+    fn create(path: &Path) -> Result<Self> {
+        let refuse = |cause: &dyn std::fmt::Display| {
+            Error::in_file(
+                path,
+                format!("the image cannot be written: {cause}"),
+                "name a file in a folder that exists and can be written to",
+            )
+        };
+        let name = path.file_name().ok_or_else(|| refuse(&"it has no name"))?;
+        if path.is_dir() {
+            return Err(refuse(&"it is a folder"));
+        }
+        // Another process, or a thread of this one, may be writing the same image.
+        for attempt in 0..100 {
+            let mut hidden = OsString::from(".");
+            hidden.push(name);
+            hidden.push(format!(".{}-{attempt}.partial", process::id()));
+            let partial = path.with_file_name(hidden);
+            match OpenOptions::new().write(true).create_new(true).open(&partial) {
+                Ok(file) => return Ok(Self { file, path: partial }),
+                Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
+                Err(error) => return Err(refuse(&error)),
+            }
+        }
+        Err(refuse(&"unfinished files are in its way"))
+    }
+
+    fn finish(self, path: &Path) -> Result<()> {
+        fs::rename(&self.path, path)
+            .map_err(|error| Error::in_file(path, format!("the image cannot be written: {error}"), "choose another place"))
+    }
+}
+
+impl Drop for Partial {
+    fn drop(&mut self) {
+        // After `finish` there is no such file, and nobody can be told of any other failure here.
+        let _ = fs::remove_file(&self.path);
+    }
+}
+
+fn write_exr(out: impl Write + Seek, layers: &Layers) -> std::result::Result<(), String> {
+    let mut channels = ex::SmallVec::new();
+    let unnamed = std::iter::once((String::new(), layers.image));
+    let named = layers.named.iter().map(|(name, image)| (format!("{name}."), *image));
+    for (prefix, image) in unnamed.chain(named) {
+        for (band, letter) in ["R", "G", "B"].into_iter().enumerate() {
+            let samples = image.pixels.iter().map(|pixel| pixel[band]).collect();
+            channels.push(ex::AnyChannel::new(text(&format!("{prefix}{letter}"))?, ex::FlatSamples::F32(samples)));
+        }
+    }
+    let words: Vec<_> = layers.notes.iter().map(|(name, value)| format!("{name}={value}")).collect();
+    // One attribute, and a standard one: the writer keeps others in a map whose order changes from run to run.
+    let attributes = ex::LayerAttributes {
+        comments: (!words.is_empty()).then(|| text(&words.join(" "))).transpose()?,
+        ..ex::LayerAttributes::default()
+    };
+    let size = (layers.image.width as usize, layers.image.height as usize);
+    let layer = ex::Layer::new(size, attributes, ex::Encoding::SMALL_LOSSLESS, ex::AnyChannels::sort(channels));
+    ex::WritableImage::write(&ex::Image::from_layer(layer)).to_buffered(out).map_err(|e| e.to_string())
+}
+
+fn text(words: &str) -> std::result::Result<ex::Text, String> {
+    ex::Text::new_or_none(words).ok_or_else(|| format!("EXR cannot spell “{words}”"))
+}
+
+/// RGBE has no sign and no infinity; its 8-bit mantissas are cut, not rounded.
+fn write_hdr(out: impl Write, image: &Image) -> std::result::Result<(), String> {
+    let pixels: Vec<_> = image.pixels.iter().map(|pixel| Rgb(pixel.map(|v| if v.is_nan() { 0.0 } else { v.clamp(0.0, 1e38) }))).collect();
+    let (width, height) = (image.width as usize, image.height as usize);
+    codecs::hdr::HdrEncoder::new(out).encode(&pixels, width, height).map_err(|e| e.to_string())
+}
+
+fn write_png(out: impl Write, image: &Image) -> std::result::Result<(), String> {
+    let bytes: Vec<u8> = image.pixels.iter().flatten().map(|&v| srgb(v)).collect();
+    codecs::png::PngEncoder::new(out).write_image(&bytes, image.width, image.height, ExtendedColorType::Rgb8).map_err(|e| e.to_string())
+}
+
+/// Linear → 8-bit sRGB (IEC 61966-2-1), rounded to the nearest; NaN is black.
+fn srgb(linear: f32) -> u8 {
+    let v = linear.clamp(0.0, 1.0);
+    // The cast takes NaN to 0.
+    let encoded = if v <= 0.003_130_8 { 12.92 * v } else { 1.055 * math::pow(v, 1.0 / 2.4) - 0.055 };
+    (encoded * 255.0 + 0.5) as u8
+}
+
+#[cfg(test)]
+mod tests;
