@@ -3,8 +3,6 @@
 //! Data flows one way: scene file → [`load`] → [`scene`] → [`plan`] → [`render`] → [`film`] → [`image`]. A module uses only what
 //! stands before it in the list below, and a test keeps it so.
 
-pub mod cli;
-pub mod compare;
 pub mod error;
 
 pub mod image;

@@ -1,0 +1,155 @@
+//! Building the tree.
+//!
+//! A binary tree by locally ordered clustering (Meister and Bittner 2018), improved by reinsertion (2017), both from `obvhs`;
+//! then [`Collapse`] makes wide nodes and packets of it.
+
+use std::time::Instant;
+
+use obvhs::{
+    aabb::Aabb,
+    bvh2::{Bvh2, reinsertion::ReinsertionOptimizer},
+    ploc::{PlocBuilder, PlocSearchDistance, SortPrecision},
+};
+
+use super::{
+    bounds::Bounds,
+    bvh::{Bvh, Owned},
+    collapse::Collapse,
+    cylinder::RoundCylinder,
+    disk::FlatDisk,
+    node::{Child, Leaf, Node},
+    primitives::Primitives,
+    triangle::Packet,
+};
+
+/// What building took and made.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct BuildStats {
+    /// Primitives that went in.
+    pub primitives: usize,
+    /// Inner nodes of the tree.
+    pub nodes: usize,
+    /// Leaves that hold up to four triangles.
+    pub packets: usize,
+    /// Memory of the whole structure.
+    pub bytes: usize,
+    /// Wall-clock time.
+    pub seconds: f64,
+}
+
+impl Bvh {
+    /// Builds the tree; the primitives' memory is freed on the way.
+    pub fn build(primitives: Primitives) -> Self {
+        let start = Instant::now();
+        let bounds: Vec<Bounds> = primitives.all_bounds().collect();
+        let everything = bounds.iter().fold(Bounds::EMPTY, |all, &one| all.join(one));
+        let binary = binary_tree(&bounds);
+        drop(bounds);
+
+        let mut bvh = Self::empty(everything, primitives.some_hidden);
+        let count = primitives.len();
+        if count > 0 {
+            let triangles = primitives.triangles.len();
+            let plan = Collapse::new(&binary, |primitive| primitive < triangles);
+            Wide { binary: &binary, plan: &plan, primitives: &primitives, bvh: &mut bvh }.emit();
+        }
+        bvh.stats = BuildStats {
+            primitives: count,
+            nodes: bvh.nodes.len(),
+            packets: bvh.packets.len(),
+            bytes: bvh.bytes(),
+            seconds: start.elapsed().as_secs_f64(),
+        };
+        bvh
+    }
+}
+
+impl Primitives {
+    /// In the order of the tree's items: triangles, spheres, disks, cylinders.
+    fn all_bounds(&self) -> impl Iterator<Item = Bounds> {
+        let triangles = self.triangles.shapes.iter().map(|corners| Bounds::of(corners));
+        let spheres = self.spheres.shapes.iter().map(|sphere| sphere.bounds());
+        let disks = self.disks.shapes.iter().map(|disk| disk.bounds());
+        let cylinders = self.cylinders.shapes.iter().map(|cylinder| cylinder.bounds());
+        triangles.chain(spheres).chain(disks).chain(cylinders)
+    }
+}
+
+fn binary_tree(bounds: &[Bounds]) -> Bvh2 {
+    /// Of all nodes, how many reinsertion tries to place better.
+    const REINSERTED: f32 = 0.05;
+    /// Below this many primitives the whole tree is worth improving.
+    const SMALL: usize = 10_000;
+    let boxes: Vec<Aabb> = bounds.iter().map(|b| Aabb::new(b.min.into(), b.max.into())).collect();
+    let indices = (0..boxes.len() as u32).collect();
+    let search = PlocSearchDistance::Medium;
+    let mut binary = PlocBuilder::with_capacity(boxes.len()).build(search, &boxes, indices, SortPrecision::U64, 3);
+    let reinserted = if boxes.len() < SMALL { 1.0 } else { REINSERTED };
+    ReinsertionOptimizer::default().run(&mut binary, reinserted, None);
+    binary
+}
+
+/// A wide tree on its way out of its plan.
+struct Wide<'a> {
+    binary: &'a Bvh2,
+    plan: &'a Collapse<'a>,
+    primitives: &'a Primitives,
+    bvh: &'a mut Bvh,
+}
+
+impl Wide<'_> {
+    fn emit(mut self) {
+        if self.plan.is_leaf(0) {
+            self.bvh.root = Some(self.leaf(0));
+            return;
+        }
+        self.bvh.root = Some(Child::inner(0));
+        self.bvh.nodes.push(Node::new(&[]));
+        // Subtree of the binary tree, the place of its node, and how many nodes can be waiting when a ray gets there.
+        let mut open = vec![(0, 0, 0)];
+        while let Some((subtree, place, waiting)) = open.pop() {
+            let subtrees = self.plan.children(subtree);
+            let waiting = waiting + subtrees.len() - 1;
+            self.bvh.most_waiting = self.bvh.most_waiting.max(waiting);
+            let mut children = Vec::with_capacity(subtrees.len());
+            for subtree in subtrees {
+                let aabb = self.binary.nodes[subtree].aabb();
+                let child = if self.plan.is_leaf(subtree) {
+                    self.leaf(subtree)
+                } else {
+                    let place = self.bvh.nodes.len();
+                    self.bvh.nodes.push(Node::new(&[]));
+                    open.push((subtree, place, waiting));
+                    Child::inner(place)
+                };
+                children.push((Bounds { min: aabb.min.into(), max: aabb.max.into() }, child));
+            }
+            self.bvh.nodes[place] = Node::new(&children);
+        }
+    }
+
+    fn leaf(&mut self, subtree: usize) -> Child {
+        let all = self.primitives;
+        let items = self.plan.primitives(subtree);
+        let mut item = items[0];
+        if item < all.triangles.len() {
+            let triangles: Vec<_> = items.iter().map(|&item| (all.triangles.shapes[item], all.triangles.keys[item])).collect();
+            assert!(self.bvh.packets.len() < Child::MOST, "a tree holds at most 2^27 packets of triangles");
+            self.bvh.packets.push(Packet::new(&triangles));
+            return Child::leaf(Leaf::Packet, self.bvh.packets.len() - 1);
+        }
+        item -= all.triangles.len();
+        if item < all.spheres.len() {
+            self.bvh.spheres.push(Owned { shape: all.spheres.shapes[item], key: all.spheres.keys[item] });
+            return Child::leaf(Leaf::Sphere, self.bvh.spheres.len() - 1);
+        }
+        item -= all.spheres.len();
+        if item < all.disks.len() {
+            self.bvh.disks.push(Owned { shape: FlatDisk::new(&all.disks.shapes[item]), key: all.disks.keys[item] });
+            return Child::leaf(Leaf::Disk, self.bvh.disks.len() - 1);
+        }
+        item -= all.disks.len();
+        self.bvh.cylinders.push(Owned { shape: RoundCylinder::new(&all.cylinders.shapes[item]), key: all.cylinders.keys[item] });
+        Child::leaf(Leaf::Cylinder, self.bvh.cylinders.len() - 1)
+    }
+}

@@ -1,0 +1,123 @@
+//! What goes into a tree.
+
+use bidir_kernel::Vec3;
+
+use super::{cylinder::Cylinder, disk::Disk, nearest::Key, parallelogram::Parallelogram, sphere::Sphere, triangle::Triangle};
+
+/// A primitive's number: how many were inserted before it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct PrimitiveId(pub u32);
+
+/// Which rays see a primitive.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Visibility {
+    /// All.
+    #[default]
+    Everywhere,
+    /// All but those that end on the lens ([`bidir_kernel::Segment::Lens`]).
+    HiddenFromLens,
+}
+
+/// A list of primitives, kept by kind. All of them have to be finite and of more than no area; at most 2^29.
+#[derive(Clone, Debug, Default)]
+pub struct Primitives {
+    count: u32,
+    pub(super) some_hidden: bool,
+    pub(super) triangles: Kind<Triangle>,
+    pub(super) spheres: Kind<Sphere>,
+    pub(super) disks: Kind<Disk>,
+    pub(super) cylinders: Kind<Cylinder>,
+}
+
+/// The primitives of one kind and whose they are.
+#[derive(Clone, Debug)]
+pub(super) struct Kind<T> {
+    pub shapes: Vec<T>,
+    pub keys: Vec<Key>,
+}
+
+impl<T> Default for Kind<T> {
+    fn default() -> Self {
+        Self { shapes: Vec::new(), keys: Vec::new() }
+    }
+}
+
+impl<T> Kind<T> {
+    fn push(&mut self, shape: T, key: Key) {
+        self.shapes.push(shape);
+        self.keys.push(key);
+    }
+
+    pub fn len(&self) -> usize {
+        self.shapes.len()
+    }
+}
+
+impl Primitives {
+    /// None yet.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        self.count as usize
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.count == 0
+    }
+
+    /// Makes room for that many more triangles.
+    pub fn reserve_triangles(&mut self, more: usize) {
+        self.triangles.shapes.reserve(more);
+        self.triangles.keys.reserve(more);
+    }
+
+    /// Inserts the triangle a, b, c; its normal is (b − a) × (c − a).
+    pub fn triangle(&mut self, corners: [Vec3; 3], visibility: Visibility) -> PrimitiveId {
+        let key = self.next(visibility);
+        self.triangles.push(corners, key);
+        PrimitiveId(key.primitive())
+    }
+
+    /// Inserts a parallelogram.
+    pub fn parallelogram(&mut self, shape: Parallelogram, visibility: Visibility) -> PrimitiveId {
+        let key = self.next(visibility);
+        let [first, second] = shape.halves();
+        self.triangles.push(first, key);
+        self.triangles.push(second, key.second_half());
+        PrimitiveId(key.primitive())
+    }
+
+    /// Inserts a sphere.
+    pub fn sphere(&mut self, shape: Sphere, visibility: Visibility) -> PrimitiveId {
+        let key = self.next(visibility);
+        self.spheres.push(shape, key);
+        PrimitiveId(key.primitive())
+    }
+
+    /// Inserts a disk or an ellipse.
+    pub fn disk(&mut self, shape: Disk, visibility: Visibility) -> PrimitiveId {
+        let key = self.next(visibility);
+        self.disks.push(shape, key);
+        PrimitiveId(key.primitive())
+    }
+
+    /// Inserts the side of a cylinder.
+    pub fn cylinder(&mut self, shape: Cylinder, visibility: Visibility) -> PrimitiveId {
+        let key = self.next(visibility);
+        self.cylinders.push(shape, key);
+        PrimitiveId(key.primitive())
+    }
+
+    fn next(&mut self, visibility: Visibility) -> Key {
+        assert!(self.count < 1 << 29, "a tree holds at most 2^29 primitives");
+        let hidden = visibility == Visibility::HiddenFromLens;
+        let key = Key::new(self.count, hidden);
+        self.count += 1;
+        self.some_hidden |= hidden;
+        key
+    }
+}

@@ -1,0 +1,115 @@
+//! A ray with everything computed that its box and triangle tests share.
+
+use bidir_kernel::{Ray, Segment, Vec3};
+use glam::DVec3;
+use wide::f32x4;
+
+use super::bounds::Bounds;
+
+/// Half the distance from 1 to the next number: the relative error of one rounding.
+const U: f32 = f32::EPSILON / 2.0;
+/// How far rounding can move the ray a triangle test sees away from the ray a box test sees, in units of
+/// U · the largest distance from the origin to anything, per axis: 1 for vertex − origin, 4 for the shear and 3 for
+/// the slab, rounded up generously.
+const SLACK: f32 = 12.0 * U;
+/// The end of the ray is this much nearer than asked: four roundings.
+const END: f32 = 1.0 - 4.0 * U;
+/// Longer than any ray, and finite, so that 0 · inverse is 0 and not NaN.
+const FLAT: f32 = f32::MAX;
+
+pub(super) struct Probe {
+    pub origin: Vec3,
+    pub direction: Vec3,
+    /// Hits are nearer than this.
+    pub limit: f32,
+    /// Whether primitives that are hidden from the lens are passed.
+    pub hide: bool,
+
+    /// Which of a node's six rows (three minima, three maxima) the ray enters and leaves by, per axis.
+    pub near_row: [usize; 3],
+    pub far_row: [usize; 3],
+    /// The origin, moved by the slack so that every box grows by it.
+    pub near_origin: [f32x4; 3],
+    pub far_origin: [f32x4; 3],
+    pub inverse: [f32x4; 3],
+
+    /// The axes permuted so that the direction's largest component comes last.
+    pub axes: [usize; 3],
+    /// The origin in permuted axes.
+    pub apex: [f32x4; 3],
+    /// d_x / d_z, d_y / d_z and 1 / d_z in permuted axes: x − shear·z turns the ray into the z axis.
+    pub shear: [f32x4; 3],
+    /// |d_z| in permuted axes.
+    pub depth: f32x4,
+}
+
+impl Probe {
+    /// `None` where the ray cannot hit anything in `bounds`, because it is not finite, has no direction or no length.
+    #[inline(always)]
+    pub fn new(ray: &Ray, bounds: &Bounds, some_hidden: bool) -> Option<Self> {
+        let (o, d) = (ray.origin, ray.direction);
+        // Each product is 0, or NaN where its factor is not finite.
+        let finite = (o.x * 0.0 + o.y * 0.0 + o.z * 0.0) + (d.x * 0.0 + d.y * 0.0 + d.z * 0.0) == 0.0;
+        let [x, y, z] = [d.x.abs(), d.y.abs(), d.z.abs()];
+        let last = if x > y {
+            if x > z { 0 } else { 2 }
+        } else if y > z {
+            1
+        } else {
+            2
+        };
+        let largest = x.max(y).max(z);
+        let limit = ray.t_max * END;
+        if !(finite && largest >= f32::MIN_POSITIVE && limit > 0.0) {
+            return None;
+        }
+
+        let reach = bounds.reach(o);
+        let slack = SLACK * reach.x.max(reach.y).max(reach.z);
+        let inverse = [inverse(d.x), inverse(d.y), inverse(d.z)];
+        let (o, d) = (o.to_array(), d.to_array());
+        let axes = [[1, 2, 0], [2, 0, 1], [0, 1, 2]][last];
+        let mut probe = Self {
+            origin: ray.origin,
+            direction: ray.direction,
+            limit,
+            hide: some_hidden && ray.segment == Segment::Lens,
+            near_row: [0, 1, 2],
+            far_row: [3, 4, 5],
+            near_origin: [f32x4::ZERO; 3],
+            far_origin: [f32x4::ZERO; 3],
+            inverse: inverse.map(f32x4::splat),
+            axes,
+            apex: axes.map(|axis| f32x4::splat(o[axis])),
+            shear: [d[axes[0]] * inverse[last], d[axes[1]] * inverse[last], inverse[last]].map(f32x4::splat),
+            depth: f32x4::splat(largest),
+        };
+        for axis in 0..3 {
+            // Always more than half a step of the origin, or adding it would do nothing.
+            let wide = slack + 2.0 * U * o[axis].abs();
+            let out = if d[axis].is_sign_negative() {
+                probe.near_row[axis] = axis + 3;
+                probe.far_row[axis] = axis;
+                -wide
+            } else {
+                wide
+            };
+            probe.near_origin[axis] = f32x4::splat(o[axis] + out);
+            probe.far_origin[axis] = f32x4::splat(o[axis] - out);
+        }
+        Some(probe)
+    }
+
+    /// The origin and the direction, for tests that need f64.
+    #[inline(always)]
+    pub fn in_f64(&self) -> (DVec3, DVec3) {
+        (self.origin.as_dvec3(), self.direction.as_dvec3())
+    }
+}
+
+/// 1/d, finite also for d = 0.
+#[inline(always)]
+fn inverse(d: f32) -> f32 {
+    let inverse = 1.0 / d;
+    if inverse.abs() <= FLAT { inverse } else { FLAT.copysign(d) }
+}

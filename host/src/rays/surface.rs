@@ -1,0 +1,35 @@
+//! The point of a hit, on the primitive and not on the ray.
+
+use bidir_kernel::Vec3;
+use glam::DVec3;
+
+use super::bounds::Bounds;
+
+/// A point of a primitive.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SurfacePoint {
+    /// In the world: the f32 point nearest to a point of the primitive.
+    pub position: Vec3,
+    /// The unit geometric normal, as the primitive's type defines it, whichever side the ray came from.
+    pub normal: Vec3,
+    /// How far along the normal, to either side, a ray has to start or end to clear the rounding error of `position`.
+    pub offset: f32,
+    /// On the primitive. Triangle: (b1, b2, 0). Parallelogram: (a, b, 0). Disk: (a, b, 0).
+    /// Sphere: the unit outward normal. Cylinder: (cos φ, sin φ, height as a part of the length).
+    pub local: Vec3,
+}
+
+impl SurfacePoint {
+    /// From a point and a normal that are exact compared to f32; `bounds` is the box of all there is.
+    ///
+    /// With u the relative error of one rounding, the offset is twice the sum, along the normal, of
+    /// u·|p| for rounding the position, u·|p| for adding the offset to it, and u·reach for rounding the direction of a segment
+    /// that ends here after coming from the other end of the scene.
+    pub(super) fn new(position: DVec3, normal: DVec3, local: DVec3, bounds: &Bounds) -> Self {
+        const U: f64 = f32::EPSILON as f64 / 2.0;
+        let rounded = position.as_vec3();
+        let error = (position.abs() * 2.0 + bounds.reach(rounded).as_dvec3()) * U;
+        let offset = 2.0 * normal.abs().dot(error);
+        Self { position: rounded, normal: normal.as_vec3(), offset: offset as f32, local: local.as_vec3() }
+    }
+}

@@ -1,0 +1,7 @@
+//! Geometry against what it ought to be: an f64 oracle that knows no tree, closed surfaces, and rays nobody means to cast.
+
+mod edges;
+mod oracle;
+mod random;
+mod self_hits;
+mod watertight;
