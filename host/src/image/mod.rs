@@ -1,0 +1,3 @@
+//! Images: files and pixels.
+
+pub mod read;
