@@ -2,4 +2,5 @@
 
 pub mod error;
 pub mod image;
+pub mod load;
 pub mod scene;
