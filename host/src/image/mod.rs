@@ -1,5 +1,6 @@
 //! Images in memory, and the files they come from and go to.
 
+pub mod read;
 pub mod trim;
 pub mod write;
 

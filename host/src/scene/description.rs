@@ -145,7 +145,7 @@ pub enum Texture {
     },
 }
 
-/// An image as a texture. Linear values; v = 0 is the image's lower edge, as Mitsuba has it.
+/// An image as a texture. Linear values; v = 0 is the image's upper edge and v = 1 its lower one, as Mitsuba 3 has it.
 #[derive(Clone, Debug)]
 pub struct Bitmap {
     /// In texels.

@@ -1,0 +1,248 @@
+//! Reading images: EXR, HDR, PNG, JPEG, BMP and TGA into linear pixels.
+
+use std::{
+    cell::Cell,
+    io::Cursor,
+    panic::{AssertUnwindSafe, catch_unwind, set_hook, take_hook},
+    path::Path,
+    sync::Once,
+};
+
+use bidir_kernel::Spectrum;
+use exr::prelude::{FlatSamples, Layer, MetaData, ReadChannels, ReadLayers, f16};
+use image::DynamicImage;
+
+use crate::error::{Error, Result};
+
+/// The most pixels that an image may have: 16384 × 8192.
+pub const MAX_PIXELS: u64 = 1 << 27;
+/// The largest image once decoded, all channels and layers together, in bytes; also the largest file.
+const MAX_BYTES: u64 = 4 << 30;
+
+/// Linear pixels.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Pixels {
+    /// At least 1.
+    pub width: u32,
+    /// At least 1.
+    pub height: u32,
+    /// Rows from the top, each from the left. Whatever the file holds: negative, NaN and infinite values too.
+    pub values: Vec<Spectrum>,
+}
+
+/// How the whole numbers of 8- and 16-bit files are meant. Files of floats are always linear.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Encoding {
+    /// With the sRGB curve, to be undone.
+    Srgb,
+    /// As fractions of the largest number.
+    Linear,
+}
+
+/// Reads an image; alpha is left out, and grey becomes three equal bands. Of an EXR's layers, the one with plain R, G, B.
+///
+/// # Errors
+/// If the file cannot be read, is no image, or has more than [`MAX_PIXELS`].
+pub fn read(path: &Path, encoding: Encoding) -> Result<Pixels> {
+    let fail = |thing: String| Error::in_file(path, thing, "name an EXR, HDR, PNG, JPEG, BMP or TGA image");
+    let found = std::fs::metadata(path).map_err(|e| fail(format!("cannot be read ({e})")))?;
+    if !found.is_file() {
+        return Err(fail("is not a file".into()));
+    }
+    if found.len() > MAX_BYTES {
+        return Err(fail(format!("is larger than {} GiB", MAX_BYTES >> 30)));
+    }
+    let bytes = std::fs::read(path).map_err(|e| fail(format!("cannot be read ({e})")))?;
+    let decoded = quietly(|| if bytes.starts_with(&EXR_MAGIC) { exr(&bytes) } else { other(&bytes, path, encoding) });
+    decoded.map_err(|thing| fail(format!("cannot be decoded ({thing})")))
+}
+
+const EXR_MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
+
+fn check_size(width: u64, height: u64) -> std::result::Result<(), String> {
+    match width.checked_mul(height) {
+        Some(0) => Err("it has no pixels".into()),
+        Some(1..=MAX_PIXELS) => Ok(()),
+        _ => Err(format!("{width}×{height} is more than {MAX_PIXELS} pixels")),
+    }
+}
+
+fn exr(bytes: &[u8]) -> std::result::Result<Pixels, String> {
+    let text = |e: exr::error::Error| e.to_string();
+    let meta = MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(text)?;
+    let mut total = 0_u64;
+    for header in &meta.headers {
+        let (width, height) = (header.layer_size.x() as u64, header.layer_size.y() as u64);
+        check_size(width, height)?;
+        total = total.saturating_add(width * height * header.channels.bytes_per_pixel as u64);
+        if header.deep {
+            return Err("deep images are not supported".into());
+        }
+    }
+    if total > MAX_BYTES {
+        return Err(format!("its layers take more than {} GiB", MAX_BYTES >> 30));
+    }
+    let image = exr::prelude::read().no_deep_data().largest_resolution_level().all_channels().all_layers().all_attributes();
+    let image = image.non_parallel().from_buffered(Cursor::new(bytes)).map_err(text)?;
+    let named = |layer: &&Layer<_>| layer.attributes.layer_name.is_none() && channels(layer).is_some();
+    let layer = image.layer_data.iter().find(named).or_else(|| image.layer_data.iter().find(|l| channels(l).is_some()));
+    let layer = layer.ok_or("it has neither R, G, B nor Y")?;
+    let (width, height) = (layer.size.x(), layer.size.y());
+    let channels = channels(layer).unwrap_or_default();
+    let bands: Vec<Vec<f32>> = channels.iter().map(|c| floats(&layer.channel_data.list[*c].sample_data)).collect();
+    if bands.iter().any(|b| b.len() != width * height) {
+        return Err("its channels differ in size".into());
+    }
+    let values = (0..width * height).map(|at| Spectrum([bands[0][at], bands[bands.len() / 2][at], bands[bands.len() - 1][at]]));
+    Ok(Pixels { width: width as u32, height: height as u32, values: values.collect() })
+}
+
+/// Which channels hold red, green and blue, or grey.
+fn channels(layer: &Layer<exr::prelude::AnyChannels<FlatSamples>>) -> Option<Vec<usize>> {
+    let list = &layer.channel_data.list;
+    let find = |name: &str| list.iter().position(|c| c.name.eq_case_insensitive(name));
+    match (find("R"), find("G"), find("B"), find("Y")) {
+        (Some(r), Some(g), Some(b), _) => Some(vec![r, g, b]),
+        (None, None, None, Some(y)) if find("RY").is_none() => Some(vec![y]),
+        _ if list.len() == 1 => Some(vec![0]),
+        _ => None,
+    }
+}
+
+fn floats(samples: &FlatSamples) -> Vec<f32> {
+    match samples {
+        FlatSamples::F16(v) => v.iter().map(|s: &f16| s.to_f32()).collect(),
+        FlatSamples::F32(v) => v.clone(),
+        FlatSamples::U32(v) => v.iter().map(|s| *s as f32).collect(),
+    }
+}
+
+fn other(bytes: &[u8], path: &Path, encoding: Encoding) -> std::result::Result<Pixels, String> {
+    let mut reader = image::ImageReader::new(Cursor::new(bytes));
+    // TGA has no signature, so there the name decides.
+    if let Ok(format) = image::ImageFormat::from_path(path) {
+        reader.set_format(format);
+    }
+    let mut reader = reader.with_guessed_format().map_err(|e| e.to_string())?;
+    let mut limits = image::Limits::default();
+    limits.max_image_width = Some(1 << 20);
+    limits.max_image_height = Some(1 << 20);
+    limits.max_alloc = Some(MAX_PIXELS * 16);
+    reader.limits(limits);
+    let decoded = reader.decode().map_err(|e| e.to_string())?;
+    let (width, height) = (decoded.width(), decoded.height());
+    check_size(width.into(), height.into())?;
+    let values = match decoded {
+        DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_) => decoded.to_rgb32f().pixels().map(|p| Spectrum(p.0)).collect(),
+        DynamicImage::ImageLuma16(_) | DynamicImage::ImageLumaA16(_) | DynamicImage::ImageRgb16(_) | DynamicImage::ImageRgba16(_) => {
+            decoded.to_rgb16().pixels().map(|p| Spectrum(p.0.map(|v| encoding.decode(f64::from(v) / 65535.0)))).collect()
+        }
+        _ => {
+            let table: Vec<f32> = (0..256).map(|v| encoding.decode(f64::from(v) / 255.0)).collect();
+            decoded.to_rgb8().pixels().map(|p| Spectrum(p.0.map(|v| table[usize::from(v)]))).collect()
+        }
+    };
+    Ok(Pixels { width, height, values })
+}
+
+impl Encoding {
+    /// IEC 61966-2-1.
+    fn decode(self, v: f64) -> f32 {
+        let linear = match self {
+            Self::Linear => v,
+            Self::Srgb if v <= 0.04045 => v / 12.92,
+            Self::Srgb => libm::pow((v + 0.055) / 1.055, 2.4),
+        };
+        linear as f32
+    }
+}
+
+thread_local! {
+    static QUIET: Cell<bool> = const { Cell::new(false) };
+}
+
+/// Runs a decoder so that a file which makes it panic is an error like any other, without a word on standard error.
+fn quietly<T>(decode: impl FnOnce() -> std::result::Result<T, String>) -> std::result::Result<T, String> {
+    static HOOK: Once = Once::new();
+    HOOK.call_once(|| {
+        let before = take_hook();
+        set_hook(Box::new(move |panic| {
+            if !QUIET.with(Cell::get) {
+                before(panic);
+            }
+        }));
+    });
+    QUIET.with(|quiet| quiet.set(true));
+    let result = catch_unwind(AssertUnwindSafe(decode));
+    QUIET.with(|quiet| quiet.set(false));
+    result.unwrap_or_else(|_| Err("the file is damaged".into()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn png(name: &str, pixels: &[[u8; 3]], width: u32) -> (tempfile::TempDir, std::path::PathBuf) {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join(name);
+        let height = pixels.len() as u32 / width;
+        image::RgbImage::from_raw(width, height, pixels.concat()).unwrap().save(&path).unwrap();
+        (folder, path)
+    }
+
+    #[test]
+    fn eight_bits_are_srgb_unless_they_are_said_to_be_linear() {
+        let (_folder, path) = png("a.png", &[[255, 128, 0]], 1);
+        let srgb = read(&path, Encoding::Srgb).unwrap().values[0];
+        assert!((srgb[1] - 0.2158605).abs() < 1e-6 && srgb[0] == 1.0 && srgb[2] == 0.0);
+        assert_eq!(read(&path, Encoding::Linear).unwrap().values[0][1], 128.0 / 255.0);
+    }
+
+    #[test]
+    fn rows_come_from_the_top() {
+        let (_folder, path) = png("a.bmp", &[[255, 0, 0], [0, 255, 0], [0, 0, 255], [0, 0, 0]], 2);
+        let pixels = read(&path, Encoding::Srgb).unwrap();
+        assert_eq!(pixels.values[1], Spectrum([0.0, 1.0, 0.0]));
+        assert_eq!(pixels.values[2], Spectrum([0.0, 0.0, 1.0]));
+    }
+
+    #[test]
+    fn floats_keep_their_values() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.exr");
+        let value = |x: usize, _: usize| (x as f32, -1.0_f32, f32::INFINITY);
+        exr::prelude::write_rgb_file(&path, 2, 1, value).unwrap();
+        assert_eq!(read(&path, Encoding::Srgb).unwrap().values[1], Spectrum([1.0, -1.0, f32::INFINITY]));
+    }
+
+    #[test]
+    fn what_is_no_image_is_an_error_that_names_the_file() {
+        let folder = tempfile::tempdir().unwrap();
+        for (name, content) in
+            [("a.png", &b"hello"[..]), ("a.exr", &EXR_MAGIC), ("a.tga", b"x"), ("a", b""), ("a.hdr", b"#?RADIANCE\n\n-Y 9 +X")]
+        {
+            let path = folder.path().join(name);
+            std::fs::write(&path, content).unwrap();
+            let error = read(&path, Encoding::Srgb).unwrap_err().to_string();
+            assert!(error.contains(name) && error.contains("cannot be decoded"), "{error}");
+        }
+        assert!(read(folder.path(), Encoding::Srgb).unwrap_err().to_string().contains("is not a file"));
+        assert!(read(&folder.path().join("none.png"), Encoding::Srgb).is_err());
+    }
+
+    #[test]
+    fn a_damaged_file_is_an_error_or_an_image_but_never_a_panic() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.exr");
+        exr::prelude::write_rgb_file(&path, 8, 8, |x, y| (x as f32, y as f32, 1.0_f32)).unwrap();
+        let whole = std::fs::read(&path).unwrap();
+        for at in (4..whole.len()).step_by(3) {
+            let mut bytes = whole.clone();
+            bytes[at] ^= 0xff;
+            std::fs::write(&path, &bytes).unwrap();
+            let _either = read(&path, Encoding::Srgb);
+            std::fs::write(&path, &whole[..at]).unwrap();
+            let _either = read(&path, Encoding::Srgb);
+        }
+    }
+}

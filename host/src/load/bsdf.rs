@@ -1,0 +1,195 @@
+//! `<bsdf>`: what surfaces are made of.
+
+use bidir_kernel::Spectrum;
+
+use super::{
+    catalog,
+    context::Context,
+    ior,
+    properties::{Properties, Value, line},
+    suggest::{did_you_mean, list},
+    texture::{Range, parameter},
+    xml::Element,
+};
+use crate::{
+    error::{Error, Result},
+    scene::description::{Distribution, Material, MaterialId, Texture},
+};
+
+/// How deep materials may nest, references followed.
+const MAX_DEPTH: usize = 16;
+
+/// The material of a shape that names none.
+pub(super) fn default(context: &mut Context) -> MaterialId {
+    if let Some(known) = context.default_material {
+        return known;
+    }
+    let id = add(context, Material::Diffuse { reflectance: Texture::Constant(Spectrum::splat(0.5)) });
+    context.default_material = Some(id);
+    id
+}
+
+/// The material that an element describes; once for each element, however often it is referred to.
+pub(super) fn material(context: &mut Context, element: &Element) -> Result<MaterialId> {
+    match context.material_ids.get(&element.serial) {
+        Some(Some(known)) => return Ok(*known),
+        Some(None) => {
+            let thing = format!("the bsdf on line {} refers to itself", line(&element.place));
+            return Err(Error::at(&element.place, thing, "take one of the references out"));
+        }
+        None => {}
+    }
+    if context.material_ids.values().filter(|id| id.is_none()).count() >= MAX_DEPTH {
+        return Err(Error::at(&element.place, format!("materials nest more than {MAX_DEPTH} deep"), "flatten them"));
+    }
+    context.material_ids.insert(element.serial, None);
+    let properties = Properties::read(element, &context.ids)?;
+    catalog::check("bsdf", properties.kind(), &element.place)?;
+    let material = read(context, &properties)?;
+    properties.finish()?;
+    let id = add(context, material);
+    context.material_ids.insert(element.serial, Some(id));
+    Ok(id)
+}
+
+fn add(context: &mut Context, material: Material) -> MaterialId {
+    context.materials.push(material);
+    MaterialId(context.materials.len() as u32 - 1)
+}
+
+fn read(context: &mut Context, of: &Properties) -> Result<Material> {
+    let mut fraction = |name, default| parameter(context, of, name, default, Range::Fraction);
+    Ok(match of.kind() {
+        "diffuse" => Material::Diffuse { reflectance: fraction("reflectance", 0.5)? },
+        "conductor" => {
+            let (eta, k) = metal(of)?;
+            Material::Conductor { eta, k, specular_reflectance: fraction("specular_reflectance", 1.0)? }
+        }
+        "roughconductor" => {
+            let (eta, k) = metal(of)?;
+            let specular_reflectance = fraction("specular_reflectance", 1.0)?;
+            let Roughness { distribution, alpha_u, alpha_v } = roughness(context, of)?;
+            Material::RoughConductor { eta, k, specular_reflectance, distribution, alpha_u, alpha_v }
+        }
+        "dielectric" => Material::Dielectric {
+            eta: eta(of, "bk7")?,
+            specular_reflectance: fraction("specular_reflectance", 1.0)?,
+            specular_transmittance: fraction("specular_transmittance", 1.0)?,
+        },
+        "thindielectric" => Material::ThinDielectric {
+            eta: eta(of, "bk7")?,
+            specular_reflectance: fraction("specular_reflectance", 1.0)?,
+            specular_transmittance: fraction("specular_transmittance", 1.0)?,
+        },
+        "roughdielectric" => {
+            let eta = eta(of, "bk7")?;
+            if eta == 1.0 {
+                let remedy = "make int_ior and ext_ior differ, or use null";
+                return Err(Error::at(of.place(), "roughdielectric between two equal indices of refraction", remedy));
+            }
+            let specular_reflectance = fraction("specular_reflectance", 1.0)?;
+            let specular_transmittance = fraction("specular_transmittance", 1.0)?;
+            let Roughness { distribution, alpha_u, alpha_v } = roughness(context, of)?;
+            Material::RoughDielectric { eta, specular_reflectance, specular_transmittance, distribution, alpha_u, alpha_v }
+        }
+        "plastic" => Material::Plastic {
+            eta: eta(of, "polypropylene")?,
+            diffuse_reflectance: fraction("diffuse_reflectance", 0.5)?,
+            specular_reflectance: fraction("specular_reflectance", 1.0)?,
+            nonlinear: of.boolean("nonlinear")?.unwrap_or(false),
+        },
+        "twosided" => twosided(context, of)?,
+        _ => Material::Null,
+    })
+}
+
+fn twosided(context: &mut Context, of: &Properties) -> Result<Material> {
+    let sides = of.objects("bsdf");
+    let mut ids = Vec::with_capacity(2);
+    for side in &sides {
+        let id = material(context, side)?;
+        let transmits = matches!(
+            context.materials[id.0 as usize],
+            Material::Dielectric { .. } | Material::ThinDielectric { .. } | Material::RoughDielectric { .. } | Material::Null
+        );
+        if transmits {
+            let kind = side.attribute("type").unwrap_or("");
+            return Err(Error::at(&side.place, format!("twosided holds {kind}, which lets light through"), "use it without twosided"));
+        }
+        ids.push(id);
+    }
+    match ids.as_slice() {
+        [both] => Ok(Material::TwoSided { front: *both, back: *both }),
+        [front, back] => Ok(Material::TwoSided { front: *front, back: *back }),
+        other => {
+            let thing = format!("twosided holds {} materials", other.len());
+            Err(Error::at(of.place(), thing, "put one into it for both sides, or two: front, back"))
+        }
+    }
+}
+
+/// Index inside over index outside.
+fn eta(of: &Properties, inside: &str) -> Result<f32> {
+    let index = |name: &'static str, default: &str| -> Result<f64> {
+        let named = match of.any(name) {
+            Some(Value::Text(text)) => text.trim().to_owned(),
+            Some(_) => return of.positive(name).map(|v| v.unwrap_or(1.0)),
+            None => default.to_owned(),
+        };
+        let known = ior::dielectrics();
+        ior::dielectric(&named).ok_or_else(|| {
+            let remedy = format!("{}write a number, or one of {}", did_you_mean(&named, &known), list(&known));
+            of.error(name, format!("is \"{named}\""), remedy)
+        })
+    };
+    let eta = index("int_ior", inside)? / index("ext_ior", "air")?;
+    if !(1e-3..=1e3).contains(&eta) {
+        let thing = format!("int_ior / ext_ior of {} is {eta:e}", of.label());
+        return Err(Error::at(of.place(), thing, "their ratio must lie within 0.001 … 1000"));
+    }
+    Ok(eta as f32)
+}
+
+/// η and k.
+fn metal(of: &Properties) -> Result<(Spectrum, Spectrum)> {
+    let name = of.text("material")?.map(|t| t.trim().to_owned());
+    let (eta, k) = (of.color("eta")?, of.color("k")?);
+    if name.as_deref().is_some_and(|n| n != "none") && (eta.is_some() || k.is_some()) {
+        return Err(of.error("material", "is given together with eta or k", "keep either the material or eta and k"));
+    }
+    let name = name.as_deref().unwrap_or("none");
+    let known = ior::metals();
+    let Some((named_eta, named_k)) = ior::metal(name) else {
+        let remedy = format!("{}give eta and k, or one of {}", did_you_mean(name, &known), list(&known));
+        return Err(of.error("material", format!("is \"{name}\""), remedy));
+    };
+    for (name, value) in [("eta", eta), ("k", k)] {
+        if value.is_some_and(|v| v.0.iter().any(|v| *v < 0.0)) {
+            return Err(of.error(name, "is negative", "write what was measured, 0 or more"));
+        }
+    }
+    Ok((eta.unwrap_or(named_eta), k.unwrap_or(named_k)))
+}
+
+struct Roughness {
+    distribution: Distribution,
+    alpha_u: Texture,
+    alpha_v: Texture,
+}
+
+fn roughness(context: &mut Context, of: &Properties) -> Result<Roughness> {
+    let distribution = of.choice("distribution", &[("beckmann", Distribution::Beckmann), ("ggx", Distribution::Ggx)])?;
+    of.boolean("sample_visible")?; // changes how directions are found, not what the image is
+    let both = (of.has("alpha"), of.has("alpha_u"), of.has("alpha_v"));
+    let mut alpha = |name| parameter(context, of, name, 0.1, Range::NotNegative);
+    let (alpha_u, alpha_v) = match both {
+        (true, true, _) | (true, _, true) => {
+            return Err(of.error("alpha", "is given together with alpha_u or alpha_v", "keep either alpha, or both of the others"));
+        }
+        (false, true, false) => return Err(of.missing("alpha_v", "float")),
+        (false, false, true) => return Err(of.missing("alpha_u", "float")),
+        (false, true, true) => (alpha("alpha_u")?, alpha("alpha_v")?),
+        (_, false, false) => (alpha("alpha")?, alpha("alpha")?),
+    };
+    Ok(Roughness { distribution, alpha_u, alpha_v })
+}

@@ -1,0 +1,91 @@
+//! The plugins of the scene language: those we read, and those we know of and do not read.
+
+use super::suggest::{did_you_mean, list};
+use crate::error::{Error, Place, Result};
+
+/// A plugin of the scene language.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Entry {
+    /// The element it stands in, such as `bsdf`.
+    pub tag: &'static str,
+    /// Its `type`.
+    pub name: &'static str,
+    /// `None` if it is supported, else what to use instead.
+    pub instead: Option<&'static str>,
+}
+
+/// What may be written, and what is known and may not, by element.
+pub fn entries() -> impl Iterator<Item = Entry> {
+    let supported = SUPPORTED.iter().flat_map(|(tag, names)| names.iter().map(|name| Entry { tag, name, instead: None }));
+    let others = UNSUPPORTED.iter().flat_map(|(tag, names, instead)| names.iter().map(|name| Entry { tag, name, instead: Some(instead) }));
+    supported.chain(others)
+}
+
+/// The types that an element may have.
+pub fn supported(tag: &str) -> &'static [&'static str] {
+    SUPPORTED.iter().find(|(t, _)| *t == tag).map_or(&[], |(_, names)| *names)
+}
+
+const SUPPORTED: &[(&str, &[&str])] = &[
+    ("integrator", &["path", "direct", "ptracer", "volpath", "volpathmis", "aov"]),
+    ("sampler", &["independent", "stratified", "multijitter", "orthogonal", "ldsampler"]),
+    ("sensor", &["perspective", "thinlens", "orthographic"]),
+    ("film", &["hdrfilm"]),
+    ("rfilter", &["gaussian", "box", "tent"]),
+    ("bsdf", &["diffuse", "conductor", "roughconductor", "dielectric", "thindielectric", "roughdielectric", "plastic", "twosided", "null"]),
+    ("texture", &["bitmap", "checkerboard"]),
+    ("shape", &["rectangle", "disk", "sphere", "cube", "cylinder", "obj", "ply"]),
+    ("emitter", &["area", "point", "spot", "directional", "constant", "envmap"]),
+];
+
+type Unsupported = (&'static str, &'static [&'static str], &'static str);
+const UNSUPPORTED: &[Unsupported] = &[
+    ("integrator", &["prb", "prb_basic", "prbvolpath", "direct_projective", "prb_projective"], "use path; there are no derivatives here"),
+    ("integrator", &["depth", "moment", "stokes", "volprim_rf_basic"], "use path"),
+    ("sensor", &["distant", "irradiancemeter", "radiancemeter", "batch"], "use perspective, thinlens or orthographic"),
+    ("film", &["specfilm"], "use hdrfilm; light is RGB here"),
+    ("rfilter", &["mitchell", "catmullrom", "lanczos"], "use gaussian, tent or box; filters with negative lobes are not supported"),
+    ("bsdf", &["principled", "principledthin", "pplastic", "roughplastic"], "use plastic, roughconductor or roughdielectric"),
+    ("bsdf", &["bumpmap", "normalmap"], "use the material inside it, and put the detail into the mesh"),
+    ("bsdf", &["mask", "blendbsdf"], "use one of the materials inside it"),
+    ("bsdf", &["measured", "measured_polarized", "hair", "irawan"], "use roughconductor or diffuse"),
+    ("bsdf", &["circular", "linear_polarizer", "polarizer", "retarder"], "light is not polarized here; use null"),
+    ("texture", &["mesh_attribute", "volume", "area_attribute"], "use bitmap"),
+    ("shape", &["serialized", "blender"], "save it as ply or obj"),
+    ("shape", &["instance", "shapegroup", "merge"], "write the shapes out one by one; files named twice are kept once"),
+    ("shape", &["bsplinecurve", "linearcurve", "sdfgrid", "ellipsoids", "ellipsoidsmesh"], "save it as a mesh in ply or obj"),
+    ("shape", &["heightfield"], "save it as a mesh in ply or obj"),
+    ("emitter", &["sunsky", "sun", "sky", "timed_sunsky"], "bake it into an image for envmap"),
+    ("emitter", &["projector"], "use spot"),
+    ("emitter", &["directionalarea"], "use area, spot or directional"),
+    ("emitter", &["volumelight"], "use area"),
+    ("medium", &["homogeneous", "heterogeneous"], "media are not supported; take it out"),
+];
+
+/// An error unless `<tag type="kind">` is supported.
+pub(super) fn check(tag: &str, kind: &str, place: &Place) -> Result<()> {
+    let known = supported(tag);
+    if known.contains(&kind) {
+        return Ok(());
+    }
+    if let Some((_, _, instead)) = UNSUPPORTED.iter().find(|(t, names, _)| *t == tag && names.contains(&kind)) {
+        return Err(Error::at(place, format!("{tag} type \"{kind}\" is not supported"), *instead));
+    }
+    let all: Vec<&str> = entries().filter(|e| e.tag == tag && e.instead.is_none()).map(|e| e.name).collect();
+    let remedy = format!("{}there are {}", did_you_mean(kind, &all), list(known));
+    Err(Error::at(place, format!("{tag} type \"{kind}\" is unknown"), remedy))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_plugin_is_listed_twice() {
+        let mut all: Vec<_> = entries().map(|e| (e.tag, e.name)).collect();
+        let count = all.len();
+        all.sort_unstable();
+        all.dedup();
+        assert_eq!(all.len(), count);
+    }
+}

@@ -1,0 +1,83 @@
+//! What reading a scene builds up, and what is shared between its elements.
+
+use std::{
+    collections::HashMap,
+    path::{Path, PathBuf},
+    sync::Arc,
+};
+
+use super::{ids::Ids, properties::line, xml, xml::Element};
+use crate::{
+    error::{Error, Place, Result},
+    scene::description::{Bitmap, EnvironmentImage, Material, MaterialId, Mesh},
+};
+
+/// A scene half read.
+pub(super) struct Context<'s> {
+    pub(super) ids: Ids<'s>,
+    pub(super) warnings: Vec<String>,
+    pub(super) materials: Vec<Material>,
+    /// By the serial of the element; `None` while the material is being read.
+    pub(super) material_ids: HashMap<u32, Option<MaterialId>>,
+    pub(super) default_material: Option<MaterialId>,
+    /// By the file and everything that changes what is read from it.
+    pub(super) bitmaps: HashMap<String, Arc<Bitmap>>,
+    pub(super) environments: HashMap<PathBuf, Arc<EnvironmentImage>>,
+    pub(super) meshes: HashMap<String, Arc<Mesh>>,
+    /// Area lights that a shape has, by the serial of the element, and where that shape stands.
+    attached: HashMap<u32, Place>,
+    base: Option<PathBuf>,
+    search: Vec<PathBuf>,
+}
+
+impl<'s> Context<'s> {
+    pub(super) fn new(ids: Ids<'s>, base: Option<&Path>, search: &[PathBuf]) -> Self {
+        Self {
+            ids,
+            warnings: Vec::new(),
+            materials: Vec::new(),
+            material_ids: HashMap::new(),
+            default_material: None,
+            bitmaps: HashMap::new(),
+            environments: HashMap::new(),
+            meshes: HashMap::new(),
+            attached: HashMap::new(),
+            base: base.map(Path::to_owned),
+            search: search.to_vec(),
+        }
+    }
+
+    /// The file that `filename` means: beside the file that names it, beside the scene, or where `<path>` says.
+    pub(super) fn file(&self, filename: &str, place: &Place) -> Result<PathBuf> {
+        let Some(base) = &self.base else { return Err(xml::no_files(place)) };
+        if filename.trim().is_empty() {
+            return Err(Error::at(place, "the file name is empty", "name a file"));
+        }
+        let beside = place.file.parent().unwrap_or(Path::new(""));
+        let folders = [beside, base.as_path()].into_iter().chain(self.search.iter().map(PathBuf::as_path));
+        let mut paths = folders.map(|folder| folder.join(filename));
+        let first = paths.next().unwrap_or_default();
+        if first.exists() {
+            return Ok(first);
+        }
+        paths.find(|path| path.exists()).ok_or_else(|| {
+            Error::at(place, format!("there is no file {}", first.display()), "check the name, or give its folder with <path value=\"…\"/>")
+        })
+    }
+
+    /// Keeps `warning` for the user.
+    pub(super) fn warn(&mut self, place: &Place, warning: impl std::fmt::Display) {
+        self.warnings.push(format!("{place}: {warning}"));
+    }
+
+    /// An error if a shape has this light already.
+    pub(super) fn attach(&mut self, emitter: &Element, shape: &Place) -> Result<()> {
+        match self.attached.insert(emitter.serial, shape.clone()) {
+            None => Ok(()),
+            Some(first) => {
+                let thing = format!("the emitter on line {} is on another shape already, on line {}", line(&emitter.place), line(&first));
+                Err(Error::at(shape, thing, "write a second emitter"))
+            }
+        }
+    }
+}

@@ -1,0 +1,123 @@
+//! Reading scenes: Mitsuba 3's XML into a [`Description`]. Nothing is built and nothing rendered here.
+//!
+//! What is written is either read as Mitsuba 3 reads it, or an error says where it stands, what it is and what to do instead.
+
+mod bsdf;
+pub mod catalog;
+mod context;
+mod defines;
+mod emitter;
+mod film;
+mod ids;
+mod integrator;
+mod ior;
+mod mesh;
+mod properties;
+mod sensor;
+mod shape;
+mod suggest;
+mod texture;
+mod transform;
+mod value;
+mod xml;
+
+use std::path::Path;
+
+use self::{context::Context, ids::Ids, properties::Properties};
+use crate::{
+    error::{Error, Result},
+    scene::description::{Description, Emitter, EmitterKind, Integrator},
+};
+
+/// A scene, and what the user should know about it.
+#[derive(Clone, Debug)]
+pub struct Loaded {
+    /// The scene.
+    pub description: Description,
+    /// What was changed or left out, one sentence each, with its place.
+    pub warnings: Vec<String>,
+}
+
+/// Reads the scene file `path`; `defines` are names and values for its `$name`s.
+///
+/// # Errors
+/// If anything in the file, or in the files that it names, cannot be read exactly as it is meant.
+pub fn load(path: &Path, defines: &[(String, String)]) -> Result<Loaded> {
+    let text = xml::read_text(path, None)?;
+    load_str(&text, path, Some(path.parent().unwrap_or(Path::new(""))), defines)
+}
+
+/// Reads the text of a scene; `name` is what messages call it, and `base_dir` where files are that it names, if it may name any.
+///
+/// # Errors
+/// As [`load`].
+pub fn load_str(text: &str, name: &Path, base_dir: Option<&Path>, defines: &[(String, String)]) -> Result<Loaded> {
+    let tree = xml::read(text, name, base_dir, defines)?;
+    let ids = Ids::collect(&tree.root)?;
+    let scene = Properties::read(&tree.root, &ids)?;
+    let mut context = Context::new(ids, base_dir, &tree.search);
+
+    let integrator = match scene.object("integrator")? {
+        Some(element) => integrator::integrator(&mut context, element)?,
+        None => Integrator::default(),
+    };
+    let sensors = scene.objects("sensor");
+    let Some(first) = sensors.first() else {
+        return Err(Error::at(scene.place(), "the scene has no sensor", "add one, such as <sensor type=\"perspective\">"));
+    };
+    let equipment = sensor::sensor(&context.ids, first)?;
+    if let Some(second) = sensors.get(1) {
+        context.warn(&second.place, format_args!("the scene has {} sensors; the first one is used", sensors.len()));
+    }
+    for element in scene.objects("bsdf") {
+        bsdf::material(&mut context, element)?;
+    }
+    for element in scene.objects("texture") {
+        texture::texture(&mut context, element, texture::Range::NotNegative, &element.place)?;
+    }
+    let shapes = scene.objects("shape").into_iter().map(|element| shape::shape(&mut context, element)).collect::<Result<_>>()?;
+    let emitters = emitters(&mut context, &scene)?;
+    for tag in ["medium", "volume", "phase", "film", "sampler", "rfilter"] {
+        if let Some(element) = scene.objects(tag).first() {
+            let remedy =
+                if tag == "medium" { "media are not supported; take it out" } else { "move it to where it belongs, or take it out" };
+            return Err(Error::at(&element.place, format!("a <{tag}> stands directly inside the scene"), remedy));
+        }
+    }
+    scene.finish()?;
+    let description = Description {
+        sensor: equipment.sensor,
+        film: equipment.film,
+        integrator,
+        samples_per_pixel: equipment.samples_per_pixel,
+        seed: equipment.seed,
+        materials: context.materials,
+        shapes,
+        emitters,
+    };
+    Ok(Loaded { description, warnings: context.warnings })
+}
+
+fn emitters(context: &mut Context, scene: &Properties) -> Result<Vec<Emitter>> {
+    let mut emitters = Vec::new();
+    let mut environment = None;
+    for element in scene.objects("emitter") {
+        if element.attribute("type") == Some("area") {
+            // For shapes to refer to; it shines from nowhere itself.
+            emitter::unattached_area(context, element)?;
+            continue;
+        }
+        let emitter = emitter::emitter(context, element)?;
+        if matches!(emitter.kind, EmitterKind::Constant { .. } | EmitterKind::Envmap { .. })
+            && let Some(first) = environment.replace(properties::line(&element.place))
+        {
+            let thing = format!("the scene has a second environment; the first is on line {first}");
+            return Err(Error::at(&element.place, thing, "keep one constant or envmap"));
+        }
+        emitters.push(emitter);
+    }
+    Ok(emitters)
+}
+
+#[cfg(test)]
+mod tests;

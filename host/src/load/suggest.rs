@@ -1,0 +1,31 @@
+//! The second half of an error about a name: which one may have been meant, and which ones there are.
+
+/// `did you mean "x"? `, or nothing if no name is close.
+pub(super) fn did_you_mean(name: &str, known: &[&str]) -> String {
+    let lower = name.to_lowercase();
+    let distance = |k: &str| strsim::damerau_levenshtein(&lower, &k.to_lowercase());
+    match known.iter().min_by_key(|k| distance(k)) {
+        Some(best) if distance(best) <= 1 + name.chars().count() / 3 => format!("did you mean \"{best}\"? "),
+        _ => String::new(),
+    }
+}
+
+/// `a, b and c`.
+pub(super) fn list(names: &[&str]) -> String {
+    match names {
+        [] => "none".into(),
+        [one] => (*one).into(),
+        [first @ .., last] => format!("{} and {last}", first.join(", ")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_a_close_name_is_suggested() {
+        assert_eq!(did_you_mean("ruffconductor", &["roughconductor", "diffuse"]), "did you mean \"roughconductor\"? ");
+        assert_eq!(did_you_mean("velvet", &["roughconductor", "diffuse"]), "");
+    }
+}
