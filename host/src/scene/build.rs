@@ -123,7 +123,7 @@ impl Builder<'_> {
                 }
                 self.owners.push((index, 0));
                 self.primitives.sphere(rays::Sphere { centre: center, radius }, visibility);
-                let outward = facing(*flip_normals);
+                let outward = facing(*flip_normals) * to_world.matrix3.determinant().signum() as Real;
                 (Form::Sphere(axes), outward, LightExtent::Ball(Ball { center, radius, outward }))
             }
             Geometry::Cylinder { p0, p1, radius, to_world, flip_normals } => {

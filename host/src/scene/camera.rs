@@ -86,7 +86,8 @@ fn film_plane(sensor: &Sensor, film: &FilmSettings, half: Vec2) -> FilmPlane {
         resolution: Vec2::new(film.width as Real, film.height as Real),
         window_min: Vec2::new(crop.x as Real, crop.y as Real),
         window_max: Vec2::new((crop.x + crop.width) as Real, (crop.y + crop.height) as Real),
-        principal: sensor.principal_point_offset.as_vec2(),
+        // Mitsuba's offset moves the image over the axis, not the axis over the image.
+        principal: -sensor.principal_point_offset.as_vec2(),
     }
 }
 

@@ -30,8 +30,7 @@ impl Texture {
 impl Bitmap {
     fn at(&self, uv: Vec2) -> Spectrum {
         let uv = self.to_uv.apply(uv);
-        // v = 0 is the lower edge; rows are stored from the top.
-        let (x, y) = (uv.x * self.width as Real, (1.0 - uv.y) * self.height as Real);
+        let (x, y) = (uv.x * self.width as Real, uv.y * self.height as Real);
         if self.nearest {
             return self.texel(math::floor(x) as i64, math::floor(y) as i64);
         }
