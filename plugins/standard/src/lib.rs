@@ -1,4 +1,4 @@
-//! Every built-in shader, written against the kernel's traits like any plugin: a surface is a small
+//! Every built-in shader, written against the kernel's traits like any plugin: a surface or a light is a small
 //! `Copy` struct of numbers, all textures already looked up.
 //!
 //! | surface | |
@@ -12,6 +12,15 @@
 //! | [`Plastic`] | a smooth dielectric coat over a diffuse base |
 //! | [`Null`] | lets light pass as if nothing were there |
 //!
+//! | light | |
+//! |---|---|
+//! | [`Area`] | a profile: the same radiance in every direction of the hemisphere |
+//! | [`Isotropic`] | a profile: the same intensity in every direction |
+//! | [`Spot`] | a profile: a cone that falls off towards its edge |
+//! | [`Constant`] | a profile: the same radiance from everywhere |
+//! | [`Envmap`] | a profile: an image of the surroundings |
+//! | [`Directional`] | a light: parallel rays from infinitely far away |
+//!
 //! Surfaces live in the shading frame of [`bidir_kernel::Bsdf`]. Those without transmission scatter only on the
 //! side that the normal points to. The definitions are those of Mitsuba 3, so that one scene gives one image in both.
 #![no_std]
@@ -21,6 +30,7 @@ pub mod conductor;
 pub mod dielectric;
 pub mod diffuse;
 pub mod fresnel;
+pub mod light;
 pub mod microfacet;
 pub mod null;
 pub mod plastic;
@@ -31,6 +41,7 @@ pub mod thin_dielectric;
 pub use conductor::Conductor;
 pub use dielectric::Dielectric;
 pub use diffuse::Diffuse;
+pub use light::{Area, Constant, Directional, Envmap, Isotropic, Spot};
 pub use microfacet::{Distribution, Microfacet};
 pub use null::Null;
 pub use plastic::Plastic;
