@@ -25,6 +25,8 @@
 //! side that the normal points to. The definitions are those of Mitsuba 3, so that one scene gives one image in both.
 #![no_std]
 #![allow(clippy::neg_cmp_op_on_partial_ord, reason = "`!(x > 0.0)` refuses NaN too")]
+#[cfg(test)]
+extern crate std;
 
 pub mod conductor;
 pub mod dielectric;
@@ -37,6 +39,9 @@ pub mod plastic;
 pub mod rough_conductor;
 pub mod rough_dielectric;
 pub mod thin_dielectric;
+
+#[cfg(test)]
+mod tests;
 
 pub use conductor::Conductor;
 pub use dielectric::Dielectric;
