@@ -71,6 +71,8 @@ from_libm! {
     ln,
     /// The hyperbolic cosine.
     cosh,
+    /// The complementary error function, 1 − erf x.
+    erfc,
 }
 
 /// (sin x, cos x), x in radians.

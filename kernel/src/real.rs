@@ -9,8 +9,8 @@ mod chosen {
     pub type Real = f32;
     pub use glam::{Mat3, Vec2, Vec3};
     pub use libm::{
-        acosf as acos, asinf as asin, atan2f as atan2, atanf as atan, cosf as cos, coshf as cosh, expf as exp, fabsf as abs, logf as ln,
-        powf as pow, sinf as sin, tanf as tan,
+        acosf as acos, asinf as asin, atan2f as atan2, atanf as atan, cosf as cos, coshf as cosh, erfcf as erfc, expf as exp, fabsf as abs,
+        logf as ln, powf as pow, sinf as sin, tanf as tan,
     };
 }
 
@@ -19,11 +19,11 @@ mod chosen {
     /// The number type of geometry, directions, spectra and densities.
     pub type Real = f64;
     pub use glam::{DMat3 as Mat3, DVec2 as Vec2, DVec3 as Vec3};
-    pub use libm::{acos, asin, atan, atan2, cos, cosh, exp, fabs as abs, log as ln, pow, sin, tan};
+    pub use libm::{acos, asin, atan, atan2, cos, cosh, erfc, exp, fabs as abs, log as ln, pow, sin, tan};
 }
 
 pub use chosen::{Mat3, Real, Vec2, Vec3};
-pub(crate) use chosen::{abs, acos, asin, atan, atan2, cos, cosh, exp, ln, pow, sin, tan};
+pub(crate) use chosen::{abs, acos, asin, atan, atan2, cos, cosh, erfc, exp, ln, pow, sin, tan};
 
 /// π.
 pub const PI: Real = core::f64::consts::PI as Real;

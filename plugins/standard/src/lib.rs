@@ -1,2 +1,55 @@
-//! Built-in shaders.
+//! Every built-in shader, written against the kernel's traits like any plugin: a surface or a light is a small
+//! `Copy` struct of numbers, all textures already looked up.
+//!
+//! | surface | |
+//! |---|---|
+//! | [`Diffuse`] | scatters alike in every direction |
+//! | [`Conductor`] | a smooth metal |
+//! | [`RoughConductor`] | a metal of microfacets |
+//! | [`Dielectric`] | a smooth boundary between two media |
+//! | [`ThinDielectric`] | both boundaries of a thin slab at once |
+//! | [`RoughDielectric`] | a boundary of microfacets between two media |
+//! | [`Plastic`] | a smooth dielectric coat over a diffuse base |
+//! | [`Null`] | lets light pass as if nothing were there |
+//!
+//! | light | |
+//! |---|---|
+//! | [`Area`] | a profile: the same radiance in every direction of the hemisphere |
+//! | [`Isotropic`] | a profile: the same intensity in every direction |
+//! | [`Spot`] | a profile: a cone that falls off towards its edge |
+//! | [`Constant`] | a profile: the same radiance from everywhere |
+//! | [`Envmap`] | a profile: an image of the surroundings |
+//! | [`Directional`] | a light: parallel rays from infinitely far away |
+//!
+//! Surfaces live in the shading frame of [`bidir_kernel::Bsdf`]. Those without transmission scatter only on the
+//! side that the normal points to. The definitions are those of Mitsuba 3, so that one scene gives one image in both.
 #![no_std]
+#![allow(clippy::neg_cmp_op_on_partial_ord, reason = "`!(x > 0.0)` refuses NaN too")]
+#[cfg(test)]
+extern crate std;
+
+pub mod conductor;
+pub mod dielectric;
+pub mod diffuse;
+pub mod fresnel;
+pub mod light;
+pub mod microfacet;
+pub mod null;
+pub mod plastic;
+pub mod rough_conductor;
+pub mod rough_dielectric;
+pub mod thin_dielectric;
+
+#[cfg(test)]
+mod tests;
+
+pub use conductor::Conductor;
+pub use dielectric::Dielectric;
+pub use diffuse::Diffuse;
+pub use light::{Area, Constant, Directional, Envmap, Isotropic, Spot};
+pub use microfacet::{Distribution, Microfacet};
+pub use null::Null;
+pub use plastic::Plastic;
+pub use rough_conductor::RoughConductor;
+pub use rough_dielectric::RoughDielectric;
+pub use thin_dielectric::ThinDielectric;

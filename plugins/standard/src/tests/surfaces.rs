@@ -1,0 +1,98 @@
+//! Every surface, over many parameters.
+
+use std::{boxed::Box, format, string::String, vec::Vec};
+
+use bidir_kernel::{Bsdf, Real, Spectrum};
+
+use crate::*;
+
+/// A surface under test.
+pub struct Surface {
+    /// What the message says.
+    pub name: String,
+    /// The surface.
+    pub bsdf: Box<dyn Bsdf>,
+    /// Index of refraction below / above, 1 for what does not refract.
+    pub eta: Real,
+}
+
+const TINT: Spectrum = Spectrum([0.9, 0.5, 0.2]);
+const WHITE: Spectrum = Spectrum::ONE;
+
+fn surface(name: impl Into<String>, bsdf: impl Bsdf + 'static, eta: Real) -> Surface {
+    Surface { name: name.into(), bsdf: Box::new(bsdf), eta }
+}
+
+/// GGX and Beckmann, isotropic and not.
+pub fn microfacets(alphas: &[(Real, Real)]) -> Vec<Microfacet> {
+    let both = [Distribution::Ggx, Distribution::Beckmann];
+    both.iter()
+        .flat_map(|&distribution| alphas.iter().map(move |&(alpha_u, alpha_v)| Microfacet { distribution, alpha_u, alpha_v }))
+        .collect()
+}
+
+/// A metal like gold.
+pub fn gold(microfacet: Microfacet) -> RoughConductor {
+    let (eta, k) = (Spectrum([0.14, 0.37, 1.44]), Spectrum([3.98, 2.38, 1.6]));
+    RoughConductor { eta, k, specular_reflectance: TINT, microfacet }
+}
+
+/// A rough metal that loses nothing but what its own microfacets hide.
+pub fn rough_mirror(microfacet: Microfacet) -> RoughConductor {
+    RoughConductor { eta: Spectrum::BLACK, k: WHITE, specular_reflectance: WHITE, microfacet }
+}
+
+/// Colourless rough glass.
+pub fn rough_glass(eta: Real, microfacet: Microfacet) -> RoughDielectric {
+    RoughDielectric { eta, specular_reflectance: WHITE, specular_transmittance: WHITE, microfacet }
+}
+
+fn dielectrics(out: &mut Vec<Surface>) {
+    for eta in [1.5, 1.0, 1.000_001, 0.999_999, 0.6, 2.4] {
+        let glass = Dielectric { eta, specular_reflectance: TINT, specular_transmittance: WHITE };
+        out.push(surface(format!("dielectric {eta}"), glass, eta));
+        out.push(surface(format!("dielectric {eta}, no reflection"), Dielectric { specular_reflectance: Spectrum::BLACK, ..glass }, eta));
+        out.push(surface(format!("dielectric {eta}, no refraction"), Dielectric { specular_transmittance: Spectrum::BLACK, ..glass }, eta));
+        let thin = ThinDielectric { eta, specular_reflectance: WHITE, specular_transmittance: TINT };
+        out.push(surface(format!("thin dielectric {eta}"), thin, 1.0));
+    }
+}
+
+/// All of them.
+pub fn all() -> Vec<Surface> {
+    let mut out = Vec::new();
+    out.push(surface("null", Null, 1.0));
+    out.push(surface("diffuse", Diffuse { reflectance: TINT }, 1.0));
+    let metal = gold(microfacets(&[(0.0, 0.0)])[0]);
+    out.push(surface("conductor", Conductor { eta: metal.eta, k: metal.k, specular_reflectance: TINT }, 1.0));
+    out.push(surface("smooth rough conductor", metal, 1.0));
+    for eta in [1.0, 1.3, 1.9] {
+        for nonlinear in [false, true] {
+            out.push(surface(format!("plastic {eta} {nonlinear}"), Plastic::new(eta, TINT, WHITE, nonlinear), 1.0));
+        }
+    }
+    out.push(surface("plastic without a coat", Plastic::new(1.5, TINT, Spectrum::BLACK, false), 1.0));
+    out.push(surface("plastic on black", Plastic::new(1.5, Spectrum::BLACK, WHITE, false), 1.0));
+    dielectrics(&mut out);
+    for m in microfacets(&[(0.05, 0.05), (0.2, 0.2), (0.1, 0.5), (1.0, 1.0)]) {
+        out.push(surface(format!("rough conductor {m:?}"), gold(m), 1.0));
+        // Refraction spreads by (η − 1) α: indices nearer to 1 are too narrow for the bins of the χ² test.
+        for eta in [1.5, 0.7, 2.0] {
+            out.push(surface(format!("rough dielectric {eta} {m:?}"), rough_glass(eta, m), eta));
+        }
+    }
+    for m in microfacets(&[(0.3, 0.2)]) {
+        let glass = rough_glass(1.5, m);
+        out.push(surface(
+            format!("rough dielectric, no reflection {m:?}"),
+            RoughDielectric { specular_reflectance: Spectrum::BLACK, ..glass },
+            1.5,
+        ));
+        out.push(surface(
+            format!("rough dielectric, no refraction {m:?}"),
+            RoughDielectric { specular_transmittance: Spectrum::BLACK, ..glass },
+            1.5,
+        ));
+    }
+    out
+}
