@@ -86,11 +86,17 @@ impl Named {
 impl Plan {
     /// Reads a plan; one light walk per camera walk is all that can be made today.
     pub fn read(path: &Path) -> Result<Self> {
-        let text = std::fs::read_to_string(path)
-            .map_err(|error| Error::in_file(path, format!("the plan cannot be read: {error}"), "name a file that `--stats` or `explain --json` wrote a plan to"))?;
+        let text = std::fs::read_to_string(path).map_err(|error| {
+            Error::in_file(
+                path,
+                format!("the plan cannot be read: {error}"),
+                "name a file that `--stats` or `explain --json` wrote a plan to",
+            )
+        })?;
         let plan: Self = serde_json::from_str(&text)
             .map_err(|error| Error::in_file(path, format!("this is no plan: {error}"), "see `plan` in the output of `explain --json`"))?;
-        let once = [("light_hit", plan.light_hit), ("connection", plan.connection), ("lens_splat", plan.lens_splat), ("lens_hit", plan.lens_hit)];
+        let once =
+            [("light_hit", plan.light_hit), ("connection", plan.connection), ("lens_splat", plan.lens_splat), ("lens_hit", plan.lens_hit)];
         for (name, effort) in once {
             if effort != 0.0 && effort != 1.0 {
                 return Err(Error::in_file(path, format!("{name} is {effort}"), "make it 0 or 1"));

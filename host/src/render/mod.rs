@@ -69,7 +69,13 @@ pub struct Status {
 
 /// Renders onto an empty `film`. After each pass, `report` is told where the render stands and answers the estimated error,
 /// where it knows one; raising `interrupt` ends the render after the sample under way.
-pub fn render<S: Store>(scene: &Scene, film: &S, job: &Job, interrupt: &AtomicBool, mut report: impl FnMut(&Status) -> Option<f64>) -> Status {
+pub fn render<S: Store>(
+    scene: &Scene,
+    film: &S,
+    job: &Job,
+    interrupt: &AtomicBool,
+    mut report: impl FnMut(&Status) -> Option<f64>,
+) -> Status {
     let start = Instant::now();
     let mut status = Status::default();
     let last = match job.target {

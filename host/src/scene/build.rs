@@ -235,7 +235,8 @@ impl Builder<'_> {
 
     fn emitter(&self, emitter: &description::Emitter, center: Vec3, radius: Real) -> Result<LightSource> {
         use bidir_kernel::light::{EnvironmentLight, PointLight};
-        let degenerate = || Error::at(&emitter.place, "the emitter's transform or direction is degenerate", "give it a direction of some length");
+        let degenerate =
+            || Error::at(&emitter.place, "the emitter's transform or direction is degenerate", "give it a direction of some length");
         let axes = |to_world: &DAffine3| -> Result<[Vec3; 3]> {
             let m = to_world.matrix3;
             let axis = |v: DVec3| v.try_normalize().map(|v| v.as_vec3()).ok_or_else(degenerate);
@@ -273,8 +274,9 @@ impl Builder<'_> {
             }),
             EmitterKind::Envmap { image, scale, to_world } => {
                 let [x, y, z] = axes(to_world)?;
-                let tables = EnvironmentTables::new(image.clone(), *scale as Real)
-                    .ok_or_else(|| Error::at(&emitter.place, "the environment's image has no pixels", "use an image of at least one pixel"))?;
+                let tables = EnvironmentTables::new(image.clone(), *scale as Real).ok_or_else(|| {
+                    Error::at(&emitter.place, "the environment's image has no pixels", "use an image of at least one pixel")
+                })?;
                 LightSource::Envmap(EnvironmentLight { center, radius, frame: environment_frame(x, y, z), profile: tables })
             }
         })
@@ -300,7 +302,8 @@ fn similarity(to_world: &DAffine3) -> Option<([Vec3; 3], f64)> {
     let (x, y, z) = (m.x_axis.length(), m.y_axis.length(), m.z_axis.length());
     let near = |a: f64, b: f64| (a - b).abs() <= 1e-4 * x;
     let square = |a: DVec3, b: DVec3| a.dot(b).abs() <= 1e-4 * x * x;
-    let similar = x > 0.0 && near(x, y) && near(x, z) && square(m.x_axis, m.y_axis) && square(m.y_axis, m.z_axis) && square(m.z_axis, m.x_axis);
+    let similar =
+        x > 0.0 && near(x, y) && near(x, z) && square(m.x_axis, m.y_axis) && square(m.y_axis, m.z_axis) && square(m.z_axis, m.x_axis);
     similar.then(|| ([(m.x_axis / x).as_vec3(), (m.y_axis / x).as_vec3(), (m.z_axis / x).as_vec3()], x))
 }
 

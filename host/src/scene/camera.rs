@@ -68,7 +68,6 @@ impl SceneCamera {
     }
 }
 
-
 /// The unit axes of a transform whose axes are perpendicular, and their lengths.
 fn axes(to_world: &DAffine3) -> Option<([Vec3; 3], DVec3)> {
     let m = to_world.matrix3;

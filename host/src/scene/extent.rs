@@ -223,7 +223,8 @@ impl Extent for Tube {
         let (along, arm) = (self.axis * u[1], out * self.radius);
         let offset = rounding(self.base.abs() + along.abs() + arm.abs(), normal);
         let tangent = frame.z.cross(out);
-        let point = Point::surface(self.base + along + arm, normal, Frame::from_z_and_tangent(normal, tangent), Vec2::new(u[0], u[1]), offset);
+        let point =
+            Point::surface(self.base + along + arm, normal, Frame::from_z_and_tangent(normal, tangent), Vec2::new(u[0], u[1]), offset);
         (point, PerArea(1.0 / self.area()))
     }
 
@@ -238,7 +239,8 @@ impl Extent for Surface {
         let target = f64::from(u[0]) * total;
         let index = self.cumulative.partition_point(|&sum| sum <= target).min(self.cumulative.len().saturating_sub(1));
         let below = if index == 0 { 0.0 } else { self.cumulative[index - 1] };
-        let rest = ((target - below) / (self.cumulative[index] - below)).clamp(0.0, f64::from(bidir_kernel::real::ONE_MINUS_EPSILON)) as Real;
+        let rest =
+            ((target - below) / (self.cumulative[index] - below)).clamp(0.0, f64::from(bidir_kernel::real::ONE_MINUS_EPSILON)) as Real;
         let ([p0, p1, p2], normal) = self.triangles[index];
         let b = warp::triangle([rest, u[1]]);
         let (q0, q1, q2) = (p0 * (1.0 - b.x - b.y), p1 * b.x, p2 * b.y);

@@ -61,7 +61,8 @@ impl EnvironmentTables {
     /// ∫ of the radiance over all directions, mean of the bands.
     fn total(&self) -> Real {
         let rows = self.image.height.saturating_sub(1).max(1) as Real;
-        let mean = |row: usize| self.texels[row * self.image.width as usize..][..self.image.width as usize].iter().map(|t| t.mean()).sum::<Real>();
+        let mean =
+            |row: usize| self.texels[row * self.image.width as usize..][..self.image.width as usize].iter().map(|t| t.mean()).sum::<Real>();
         let weighted: Real = (0..self.image.height as usize).map(|row| mean(row) * math::sin((row as Real / rows).min(1.0) * PI)).sum();
         // A single row has no latitude to weigh by.
         if self.image.height == 1 {
@@ -99,7 +100,9 @@ impl LightSource {
             Self::Directional(light) => SceneLight::Directional(*light),
             Self::Constant(light) => SceneLight::Constant(*light),
             Self::Envmap(light) => match light.profile.profile() {
-                Some(profile) => SceneLight::Envmap(EnvironmentLight { center: light.center, radius: light.radius, frame: light.frame, profile }),
+                Some(profile) => {
+                    SceneLight::Envmap(EnvironmentLight { center: light.center, radius: light.radius, frame: light.frame, profile })
+                }
                 // Tables are only ever made to fit; an environment without any is black.
                 None => SceneLight::Constant(EnvironmentLight {
                     center: light.center,

@@ -214,7 +214,9 @@ impl Recipe {
     fn anisotropic(&self) -> bool {
         let differ = |u: &Texture, v: &Texture| !matches!((u, v), (Texture::Constant(u), Texture::Constant(v)) if u[0] == v[0]);
         match &self.material {
-            Material::RoughConductor { alpha_u, alpha_v, .. } | Material::RoughDielectric { alpha_u, alpha_v, .. } => differ(alpha_u, alpha_v),
+            Material::RoughConductor { alpha_u, alpha_v, .. } | Material::RoughDielectric { alpha_u, alpha_v, .. } => {
+                differ(alpha_u, alpha_v)
+            }
             _ => false,
         }
     }
