@@ -3,7 +3,7 @@
 use crate::{
     bsdf::{Bsdf, Carried},
     camera::Camera,
-    density::conversion,
+    density::conversions,
     film::{Contribution, Film},
     light::Light,
     light_walk::LightVertex,
@@ -174,13 +174,13 @@ impl<'s, S: Scene, P: Sampler, F: Film> CameraWalk<'_, 's, S, P, F> {
         let exit = sampled.exit;
         let own = heuristic.of(techniques.next_event * f64::from(chance.0) * f64::from(sampled.density.value()));
         let mut others = 0.0;
+        let (to_light, to_vertex) = conversions(point, &sampled.point, sampled.direction);
         if exit.end.can_be_hit() {
-            let landed = f64::from(scatter.pdf.0) * conversion(point, &sampled.point, sampled.direction);
-            others += heuristic.of(techniques.light_hit * landed);
+            others += heuristic.of(techniques.light_hit * f64::from(scatter.pdf.0) * to_light);
         }
         if end.length < self.joined_length {
             let made = f64::from(self.scene.light_chance(id, None).0) * f64::from(exit.end.value());
-            let across = f64::from(exit.spread.value()) * conversion(&sampled.point, point, sampled.direction);
+            let across = f64::from(exit.spread.value()) * to_vertex;
             others += heuristic.of(made) * end.side.sum(heuristic, across, f64::from(scatter.pdf_rev.0));
         }
         Some(Contribution { value, weight: share(own, others) as Real, technique: Technique { s: 1, t: end.length + 1 } })
@@ -200,8 +200,9 @@ impl<'s, S: Scene, P: Sampler, F: Film> CameraWalk<'_, 's, S, P, F> {
         if value.is_black() || !self.scene.unoccluded(near, far, Segment::Inner) {
             return;
         }
-        let to_far = f64::from(here.pdf.0) * conversion(near, far, direction);
-        let to_near = f64::from(there.pdf.0) * conversion(far, near, direction);
+        let (there_per, here_per) = conversions(near, far, direction);
+        let to_far = f64::from(here.pdf.0) * there_per;
+        let to_near = f64::from(there.pdf.0) * here_per;
         let others = light_vertex.side.sum(heuristic, to_far, f64::from(there.pdf_rev.0))
             + end.side.sum(heuristic, to_near, f64::from(here.pdf_rev.0));
         self.film.add(Contribution {

@@ -1,6 +1,7 @@
 //! Probability densities, each with its measure in its type, and the one conversion between them.
 
 use crate::{
+    math::dot,
     point::{Place, Point},
     real::{Real, Vec3},
 };
@@ -71,14 +72,22 @@ impl Spread {
 /// Every change of measure in the kernel is this function. f64, since d² of a scene 1e±20 in size leaves f32.
 #[inline]
 pub fn conversion(from: &Point, to: &Point, direction: Vec3) -> f64 {
-    if to.place == Place::Distant {
-        return 1.0;
+    conversions(from, to, direction).0
+}
+
+/// [`conversion`] there and back: the second one turns a density at `to` into one of `from`.
+#[inline]
+pub fn conversions(from: &Point, to: &Point, direction: Vec3) -> (f64, f64) {
+    let cosine = |at: &Point| if at.place == Place::Surface { f64::from(dot(at.normal, direction).abs()) } else { 1.0 };
+    match (from.place == Place::Distant, to.place == Place::Distant) {
+        (false, false) => {
+            let d = to.position - from.position;
+            let (x, y, z) = (f64::from(d.x), f64::from(d.y), f64::from(d.z));
+            let per_squared = 1.0 / (x * x + y * y + z * z);
+            (cosine(to) * per_squared, cosine(from) * per_squared)
+        }
+        (true, false) => (cosine(to), 1.0),
+        (false, true) => (1.0, cosine(from)),
+        (true, true) => (1.0, 1.0),
     }
-    let cos = if to.place == Place::Surface { f64::from(crate::math::dot(to.normal, direction).abs()) } else { 1.0 };
-    if from.place == Place::Distant {
-        return cos;
-    }
-    let d = to.position - from.position;
-    let (x, y, z) = (f64::from(d.x), f64::from(d.y), f64::from(d.z));
-    cos / (x * x + y * y + z * z)
 }

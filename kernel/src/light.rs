@@ -4,7 +4,7 @@ mod area;
 mod environment;
 mod point;
 
-pub use area::{AreaLight, Extent, per_area};
+pub use area::{AreaLight, Extent, Toward, per_area};
 pub use environment::EnvironmentLight;
 pub use point::PointLight;
 

@@ -3,7 +3,7 @@
 use crate::{
     bsdf::{Bsdf, Carried},
     camera::{Camera, Seen},
-    density::{Spread, conversion},
+    density::{Spread, conversions},
     film::{Contribution, Film},
     light::{Emission, Light},
     math::dot,
@@ -133,8 +133,9 @@ impl<'s, S: Scene, P: Sampler, F: Film> LightWalk<'_, 's, S, P, F> {
             return;
         }
         let made_by_light = f64::from(chance) * f64::from(exit.end.value());
-        let made_by_camera = f64::from(seen.spread.value()) * conversion(&seen.point, point, seen.direction);
-        let on_lens = f64::from(exit.spread.value()) * conversion(point, &seen.point, seen.direction);
+        let (to_light, to_lens) = conversions(&seen.point, point, seen.direction);
+        let made_by_camera = f64::from(seen.spread.value()) * to_light;
+        let on_lens = f64::from(exit.spread.value()) * to_lens;
         let others = heuristic.of(techniques.light_hit * made_by_camera / made_by_light) + self.lens_hit_share(&seen, on_lens);
         self.film.splat(
             seen.raster,
@@ -156,13 +157,14 @@ impl<'s, S: Scene, P: Sampler, F: Film> LightWalk<'_, 's, S, P, F> {
             return;
         }
         let spread = f64::from(seen.spread.value());
-        let made_by_camera = spread * conversion(&seen.point, point, seen.direction);
+        let (to_vertex, to_lens) = conversions(&seen.point, point, seen.direction);
+        let made_by_camera = spread * to_vertex;
         // The cosine at the vertex is in the scattered value already.
         let importance = match seen.spread {
             Spread::SolidAngle(_) => seen.point.direction_to(point).map_or(0.0, |(_, squared)| spread / f64::from(squared)),
             Spread::Parallel(_) => spread,
         };
-        let on_lens = f64::from(scatter.pdf.0) * conversion(point, &seen.point, seen.direction);
+        let on_lens = f64::from(scatter.pdf.0) * to_lens;
         let others = side.sum(heuristic, made_by_camera, f64::from(scatter.pdf_rev.0)) + self.lens_hit_share(&seen, on_lens);
         self.film.splat(
             seen.raster,

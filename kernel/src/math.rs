@@ -117,10 +117,22 @@ pub fn dot(a: Vec3, b: Vec3) -> Real {
     a.x * b.x + a.y * b.y + a.z * b.z
 }
 
-/// A vector of its own length 1, or `None` where the length is 0 or not finite.
+/// A vector of its own direction and length 1, or `None` where the length is 0 or not finite.
 #[inline]
 pub fn normalize(v: Vec3) -> Option<Vec3> {
-    // Scaling by the largest component first keeps the squares of a scene 1e±30 in size inside f32.
+    let squared = dot(v, v);
+    if squared > SMALLEST_SQUARE && squared < 1.0 / SMALLEST_SQUARE {
+        return Some(v * (1.0 / sqrt(squared)));
+    }
+    normalize_extreme(v)
+}
+
+/// Sums of squares between this and its inverse are far from where they lose digits.
+const SMALLEST_SQUARE: Real = 1e-30;
+
+/// Scales by the largest component first: the squares of a scene 1e±30 in size leave f32.
+#[cold]
+fn normalize_extreme(v: Vec3) -> Option<Vec3> {
     let largest = v.x.abs().max(v.y.abs()).max(v.z.abs());
     if largest > 0.0 && largest < Real::INFINITY {
         let v = v / largest;

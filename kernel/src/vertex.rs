@@ -2,7 +2,7 @@
 
 use crate::{
     bsdf::{Bsdf, Carried, Lobe, Made, Scatter, Scattered},
-    density::conversion,
+    density::conversions,
     math::dot,
     point::Point,
     real::{Real, Vec3},
@@ -98,5 +98,6 @@ impl<B: Bsdf> Vertex<B> {
 /// A walk's way from `from` to `to`.
 #[inline]
 pub(crate) fn step(from: &Point, to: &Point, direction: Vec3, pdf: f64, pdf_rev: f64, delta: bool, effort: f64) -> Step {
-    Step { pdf, pdf_rev, delta, forward: conversion(from, to, direction), backward: conversion(to, from, direction), effort }
+    let (forward, backward) = conversions(from, to, direction);
+    Step { pdf, pdf_rev, delta, forward, backward, effort }
 }

@@ -11,7 +11,7 @@ use crate::{
         Scene,
         camera::SceneCamera,
         description::{self, Description, EmitterKind, Geometry, MaterialId},
-        extent::{Ball, Ellipse, LightExtent, Parallelogram, Surface, Tube},
+        extent::{Ball, Ellipse, Flat, LightExtent, Parallelogram, Surface, Tube},
         lights::{EnvironmentTables, LightSource, Lights, environment_frame},
         shape::{Form, MeshForm, Shape},
         surface::Finish,
@@ -103,16 +103,14 @@ impl Builder<'_> {
                 self.owners.push((index, 0));
                 self.primitives.parallelogram(rays::Parallelogram { corner, x: a * 2.0, y: b * 2.0 }, visibility);
                 let facing = facing(*flip_normals) * mirror;
-                let normal = math::normalize(a.cross(b)).unwrap_or(Vec3::Z) * facing;
-                (Form::Parallelogram(a), facing, LightExtent::Parallelogram(Parallelogram { center, a, b, normal }))
+                (Form::Parallelogram(a), facing, LightExtent::Parallelogram(Parallelogram(Flat::new(center, a, b, facing, 4.0))))
             }
             Geometry::Disk { to_world, flip_normals } => {
                 let Some((center, a, b, mirror)) = self.plane(to_world) else { return Ok(()) };
                 self.owners.push((index, 0));
                 self.primitives.disk(rays::Disk { centre: center, x: a, y: b }, visibility);
                 let facing = facing(*flip_normals) * mirror;
-                let normal = math::normalize(a.cross(b)).unwrap_or(Vec3::Z) * facing;
-                (Form::Disk(a, b), facing, LightExtent::Ellipse(Ellipse { center, a, b, normal }))
+                (Form::Disk(a, b), facing, LightExtent::Ellipse(Ellipse(Flat::new(center, a, b, facing, std::f32::consts::PI))))
             }
             Geometry::Sphere { center, radius, to_world, flip_normals } => {
                 let (axes, scale) = similarity(to_world).ok_or_else(|| unequal(shape, "sphere"))?;

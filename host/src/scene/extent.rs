@@ -2,7 +2,8 @@
 
 use bidir_kernel::{
     Frame, PerArea, Point, Real, Vec2, Vec3,
-    light::{Extent, per_area},
+    density::conversion,
+    light::{Extent, Toward, per_area},
     math, warp,
 };
 
@@ -28,31 +29,51 @@ pub enum LightExtent {
     Surface(Surface),
 }
 
-/// A centre and two half edges; the normal is their cross product's, unless turned round.
+/// A plane figure with what every sample of it shares.
 #[derive(Clone, Copy, Debug)]
-pub struct Parallelogram {
-    /// In the world.
+pub struct Flat {
+    /// Its middle, in the world.
     pub center: Vec3,
-    /// From the centre to the middle of the u = 1 edge.
+    /// From the centre to the middle of the u = 1 edge, or to the rim.
     pub a: Vec3,
-    /// From the centre to the middle of the v = 1 edge.
+    /// From the centre to the middle of the v = 1 edge, or to the rim.
     pub b: Vec3,
-    /// Unit.
-    pub normal: Vec3,
+    /// z is the normal, x along `a`.
+    pub frame: Frame,
+    /// In the world's unit, squared.
+    pub area: Real,
+    /// Bounds the rounding error of any of its points along the normal.
+    offset: Real,
+    per_area: PerArea,
 }
 
-/// A centre and two half axes.
-#[derive(Clone, Copy, Debug)]
-pub struct Ellipse {
-    /// In the world.
-    pub center: Vec3,
-    /// First half axis.
-    pub a: Vec3,
-    /// Second half axis.
-    pub b: Vec3,
-    /// Unit.
-    pub normal: Vec3,
+impl Flat {
+    /// A figure of `share` times the area |a × b|; its normal is a × b, or turned round where `facing` is −1.
+    pub fn new(center: Vec3, a: Vec3, b: Vec3, facing: Real, share: Real) -> Self {
+        let cross = a.cross(b);
+        let normal = math::normalize(cross).unwrap_or(Vec3::Z) * facing;
+        let area = share * math::sqrt(math::dot(cross, cross));
+        let offset = rounding(center.abs() + a.abs() + b.abs(), normal);
+        Self { center, a, b, frame: Frame::from_z_and_tangent(normal, a), area, offset, per_area: PerArea(1.0 / area) }
+    }
+
+    fn at(&self, x: Real, y: Real, uv: Vec2) -> Point {
+        Point::surface(self.center + self.a * x + self.b * y, self.frame.z, self.frame, uv, self.offset)
+    }
+
+    /// Whether `lit` lies on the side that the figure faces; only there does it shine.
+    fn faces(&self, lit: &Point) -> bool {
+        math::dot(lit.position - self.center, self.frame.z) > 0.0
+    }
 }
+
+/// −1 … 1 along both half edges.
+#[derive(Clone, Copy, Debug)]
+pub struct Parallelogram(pub Flat);
+
+/// Up to 1 from the centre.
+#[derive(Clone, Copy, Debug)]
+pub struct Ellipse(pub Flat);
 
 /// A sphere.
 #[derive(Clone, Copy, Debug)]
@@ -89,18 +110,6 @@ pub struct Surface {
     pub center: Vec3,
 }
 
-impl Parallelogram {
-    fn area(&self) -> Real {
-        4.0 * self.a.cross(self.b).length()
-    }
-}
-
-impl Ellipse {
-    fn area(&self) -> Real {
-        std::f32::consts::PI * self.a.cross(self.b).length()
-    }
-}
-
 impl Tube {
     fn area(&self) -> Real {
         2.0 * std::f32::consts::PI * self.radius * self.axis.length()
@@ -117,8 +126,7 @@ impl LightExtent {
     /// In the world's unit, squared.
     pub fn area(&self) -> Real {
         match self {
-            Self::Parallelogram(shape) => shape.area(),
-            Self::Ellipse(shape) => shape.area(),
+            Self::Parallelogram(Parallelogram(flat)) | Self::Ellipse(Ellipse(flat)) => flat.area,
             Self::Ball(ball) => 4.0 * std::f32::consts::PI * ball.radius * ball.radius,
             Self::Tube(tube) => tube.area(),
             Self::Surface(surface) => surface.area(),
@@ -126,35 +134,55 @@ impl LightExtent {
     }
 }
 
-/// A point of a plane figure about `center`.
-fn on_plane(center: Vec3, along: Vec3, across: Vec3, tangent: Vec3, normal: Vec3, uv: Vec2) -> Point {
-    let offset = rounding(center.abs() + along.abs() + across.abs(), normal);
-    Point::surface(center + along + across, normal, Frame::from_z_and_tangent(normal, tangent), uv, offset)
-}
-
 impl Extent for Parallelogram {
+    #[inline]
     fn sample(&self, u: [Real; 2]) -> (Point, PerArea) {
-        let (x, y) = (2.0 * u[0] - 1.0, 2.0 * u[1] - 1.0);
-        (on_plane(self.center, self.a * x, self.b * y, self.a, self.normal, Vec2::new(u[0], u[1])), PerArea(1.0 / self.area()))
+        (self.0.at(2.0 * u[0] - 1.0, 2.0 * u[1] - 1.0, Vec2::new(u[0], u[1])), self.0.per_area)
     }
 
+    #[inline]
     fn density(&self, _: &Point) -> PerArea {
-        PerArea(1.0 / self.area())
+        self.0.per_area
+    }
+
+    #[inline]
+    fn sample_toward(&self, lit: &Point, u: [Real; 2]) -> Option<Toward> {
+        toward(&self.0, lit, || self.sample(u).0)
     }
 }
 
 impl Extent for Ellipse {
+    #[inline]
     fn sample(&self, u: [Real; 2]) -> (Point, PerArea) {
         let d = warp::disk(u);
         let r = math::sqrt(warp::radius_squared(d));
         let turn = math::atan2(d.y, d.x) / (2.0 * std::f32::consts::PI);
         let uv = Vec2::new(r, if turn < 0.0 { turn + 1.0 } else { turn });
-        (on_plane(self.center, self.a * d.x, self.b * d.y, self.a, self.normal, uv), PerArea(1.0 / self.area()))
+        (self.0.at(d.x, d.y, uv), self.0.per_area)
     }
 
+    #[inline]
     fn density(&self, _: &Point) -> PerArea {
-        PerArea(1.0 / self.area())
+        self.0.per_area
     }
+
+    #[inline]
+    fn sample_toward(&self, lit: &Point, u: [Real; 2]) -> Option<Toward> {
+        toward(&self.0, lit, || self.sample(u).0)
+    }
+}
+
+/// A point of a flat light for a receiver on the side that it faces; none for others (Veach 1997, 10.3.4.2). A light's
+/// density stays that of its whole surface: from behind, nothing is lit that the other techniques would have to share.
+#[inline]
+fn toward(flat: &Flat, lit: &Point, point: impl FnOnce() -> Point) -> Option<Toward> {
+    if !flat.faces(lit) {
+        return None;
+    }
+    let point = point();
+    let (direction, squared) = lit.direction_to(&point)?;
+    let weight = math::dot(point.normal, direction).abs() * flat.area / squared;
+    Some(Toward { point, density: flat.per_area, direction, weight })
 }
 
 impl Ball {
@@ -188,11 +216,11 @@ impl Extent for Ball {
 
     /// From outside, uniform in the cone that the ball fills (Wang 1992); the point on the ball from the angles alone,
     /// so that a ball 1e7 radii away keeps its digits (pbrt-v4, 6.2.4).
-    fn sample_toward(&self, lit: &Point, u: [Real; 2]) -> Option<(Point, PerArea, Real)> {
+    fn sample_toward(&self, lit: &Point, u: [Real; 2]) -> Option<Toward> {
         let Some((one_minus_cos, sin_squared)) = self.cone(lit) else {
             let (point, PerArea(p)) = self.sample(u);
             let (direction, squared) = lit.direction_to(&point)?;
-            return Some((point, PerArea(p), math::dot(point.normal, direction).abs() / (squared * p)));
+            return Some(Toward { point, density: PerArea(p), direction, weight: math::dot(point.normal, direction).abs() / (squared * p) });
         };
         let w = warp::cone(u, one_minus_cos);
         let sin_theta_squared = w.x * w.x + w.y * w.y;
@@ -203,7 +231,9 @@ impl Extent for Ball {
         let frame = Frame::from_z(math::normalize(lit.position - self.center)?);
         let point = self.at(frame.to_world(Vec3::new(x * sin_alpha, y * sin_alpha, cos_alpha)));
         let pdf = warp::cone_pdf(one_minus_cos);
-        Some((point, per_area(pdf, lit, &point), 1.0 / pdf))
+        let (direction, _) = lit.direction_to(&point)?;
+        let density = PerArea((f64::from(pdf) * conversion(lit, &point, direction)) as Real);
+        Some(Toward { point, density, direction, weight: 1.0 / pdf })
     }
 
     fn density_toward(&self, at: &Point, lit: &Point) -> PerArea {
@@ -275,7 +305,7 @@ impl Extent for &LightExtent {
         of_extent!(self, shape => shape.density(at))
     }
 
-    fn sample_toward(&self, lit: &Point, u: [Real; 2]) -> Option<(Point, PerArea, Real)> {
+    fn sample_toward(&self, lit: &Point, u: [Real; 2]) -> Option<Toward> {
         of_extent!(self, shape => shape.sample_toward(lit, u))
     }
 

@@ -10,6 +10,19 @@ use crate::{
     real::{Real, Vec3},
 };
 
+/// A point of a surface, chosen to light a receiver.
+#[derive(Clone, Copy, Debug)]
+pub struct Toward {
+    /// The point.
+    pub point: Point,
+    /// How densely it was made.
+    pub density: PerArea,
+    /// Unit, from the receiver to the point.
+    pub direction: Vec3,
+    /// 1 / density per steradian about the receiver, finite even where the density is not.
+    pub weight: Real,
+}
+
 /// A surface that points can be sampled on.
 pub trait Extent {
     /// Samples a point with two numbers in [0, 1).
@@ -19,14 +32,15 @@ pub trait Extent {
     fn density(&self, at: &Point) -> PerArea;
 
     /// Samples a point to light `lit` from; `None` where none can be seen from there.
-    /// The weight beside the density is 1 / density per steradian about `lit`, finite even where the density is not.
-    fn sample_toward(&self, lit: &Point, u: [Real; 2]) -> Option<(Point, PerArea, Real)> {
+    #[inline]
+    fn sample_toward(&self, lit: &Point, u: [Real; 2]) -> Option<Toward> {
         let (point, PerArea(p)) = self.sample(u);
         let (direction, squared) = lit.direction_to(&point)?;
-        Some((point, PerArea(p), dot(point.normal, direction).abs() / (squared * p)))
+        Some(Toward { point, density: PerArea(p), direction, weight: dot(point.normal, direction).abs() / (squared * p) })
     }
 
     /// How densely [`Extent::sample_toward`] makes `at` for `lit`.
+    #[inline]
     fn density_toward(&self, at: &Point, lit: &Point) -> PerArea {
         let _ = lit;
         self.density(at)
@@ -42,11 +56,13 @@ pub struct AreaLight<E, P> {
     pub profile: P,
 }
 
+#[inline]
 fn profile_frame(at: &Point) -> Frame {
-    Frame::from_z_and_tangent(at.normal, at.frame.x)
+    if at.frame.z == at.normal { at.frame } else { Frame::from_z_and_tangent(at.normal, at.frame.x) }
 }
 
 impl<E: Extent, P: Profile> AreaLight<E, P> {
+    #[inline]
     fn exit(&self, at: &Point, toward: Vec3, end: PerArea) -> Exit {
         let out = self.profile.eval(at.uv, profile_frame(at).to_local(toward));
         Exit { radiance: out.radiance, end: EndDensity::Area(end), spread: Spread::SolidAngle(out.pdf) }
@@ -54,6 +70,7 @@ impl<E: Extent, P: Profile> AreaLight<E, P> {
 }
 
 impl<E: Extent, P: Profile> Light for AreaLight<E, P> {
+    #[inline]
     fn emit(&self, u: [Real; 4]) -> Option<Emission> {
         let (point, PerArea(p)) = self.extent.sample([u[0], u[1]]);
         let out = self.profile.emit(point.uv, [u[2], u[3]])?;
@@ -65,17 +82,19 @@ impl<E: Extent, P: Profile> Light for AreaLight<E, P> {
         })
     }
 
+    #[inline]
     fn illuminate(&self, lit: &Point, u: [Real; 2]) -> Option<Illumination> {
-        let (point, density, per_density) = self.extent.sample_toward(lit, u)?;
-        let (direction, _) = lit.direction_to(&point)?;
+        let Toward { point, density, direction, weight } = self.extent.sample_toward(lit, u)?;
         let exit = self.exit(&point, -direction, self.extent.density(&point));
-        Some(Illumination { point, direction, weight: exit.radiance * per_density, density: EndDensity::Area(density), exit })
+        Some(Illumination { point, direction, weight: exit.radiance * weight, density: EndDensity::Area(density), exit })
     }
 
+    #[inline]
     fn emitted(&self, at: &Point, toward: Vec3) -> Exit {
         self.exit(at, toward, self.extent.density(at))
     }
 
+    #[inline]
     fn next_event_density(&self, at: &Point, lit: &Point) -> EndDensity {
         EndDensity::Area(self.extent.density_toward(at, lit))
     }
