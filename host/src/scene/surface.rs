@@ -58,85 +58,83 @@ impl Bsdf for Shader {
     }
 }
 
-/// What a surface is behind its normal.
+/// A surface at a point: its finish, asked where the point lies. It is two words, so that vertices stay cheap to move;
+/// a finish without textures has its shader ready, others look theirs up when they are asked.
 #[derive(Clone, Copy, Debug)]
-pub enum Behind {
+pub struct Surface<'a> {
+    finish: &'a Finish,
+    uv: Vec2,
+}
+
+impl Surface<'_> {
+    /// Asks the shader that ω_o meets; the second argument is −1 where that one sees z turned round.
+    #[inline(always)]
+    fn ask<T>(&self, wo: Vec3, question: impl FnOnce(&Shader, Real) -> T) -> T {
+        let Finish { front, behind } = self.finish;
+        let (recipe, turn) = match behind {
+            _ if wo.z >= 0.0 => (front, 1.0),
+            Behind::Itself => (front, 1.0),
+            Behind::Mirrored => (front, -1.0),
+            Behind::Other(recipe) => (recipe, -1.0),
+        };
+        match &recipe.fixed {
+            Some(shader) => question(shader, turn),
+            None => question(&recipe.looked_up(self.uv), turn),
+        }
+    }
+}
+
+#[inline(always)]
+fn turned(w: Vec3, turn: Real) -> Vec3 {
+    Vec3::new(w.x, w.y, w.z * turn)
+}
+
+impl Bsdf for Surface<'_> {
+    #[inline]
+    fn eval(&self, wo: Vec3, wi: Vec3, carried: Carried) -> Scatter {
+        self.ask(wo, |shader, turn| shader.eval(turned(wo, turn), turned(wi, turn), carried))
+    }
+
+    #[inline]
+    fn sample(&self, wo: Vec3, u: [Real; 3], carried: Carried) -> Option<Scattered> {
+        self.ask(wo, |shader, turn| {
+            let scattered = shader.sample(turned(wo, turn), u, carried)?;
+            Some(Scattered { wi: turned(scattered.wi, turn), ..scattered })
+        })
+    }
+
+    #[inline]
+    fn lobes(&self) -> Lobe {
+        match &self.finish.behind {
+            Behind::Other(recipe) => self.finish.front.lobes(self.uv) | recipe.lobes(self.uv),
+            _ => self.finish.front.lobes(self.uv),
+        }
+    }
+}
+
+/// A material with what can be worked out before any hit: a shader, or one on each side.
+#[derive(Clone, Debug)]
+pub struct Finish {
+    /// Where the normal points.
+    front: Recipe,
+    behind: Behind,
+}
+
+/// What a surface is behind its normal.
+#[derive(Clone, Debug)]
+enum Behind {
     /// Whatever the one shader says of directions from behind.
     Itself,
     /// The same shader, as if its normal pointed there (`twosided` with one child).
     Mirrored,
     /// Another shader, as if its normal pointed there.
-    Other(Shader),
-}
-
-/// A surface: a shader, or one on each side.
-#[derive(Clone, Copy, Debug)]
-pub struct Surface {
-    /// Where the normal points.
-    pub front: Shader,
-    /// On the other side.
-    pub behind: Behind,
-}
-
-impl Surface {
-    /// The shader that ω_o meets, and whether it sees z turned round.
-    #[inline]
-    fn met(&self, wo: Vec3) -> (&Shader, bool) {
-        match &self.behind {
-            _ if wo.z >= 0.0 => (&self.front, false),
-            Behind::Itself => (&self.front, false),
-            Behind::Mirrored => (&self.front, true),
-            Behind::Other(shader) => (shader, true),
-        }
-    }
-}
-
-#[inline]
-fn turned(w: Vec3) -> Vec3 {
-    Vec3::new(w.x, w.y, -w.z)
-}
-
-impl Bsdf for Surface {
-    #[inline]
-    fn eval(&self, wo: Vec3, wi: Vec3, carried: Carried) -> Scatter {
-        match self.met(wo) {
-            (shader, false) => shader.eval(wo, wi, carried),
-            (shader, true) => shader.eval(turned(wo), turned(wi), carried),
-        }
-    }
-
-    #[inline]
-    fn sample(&self, wo: Vec3, u: [Real; 3], carried: Carried) -> Option<Scattered> {
-        match self.met(wo) {
-            (shader, false) => shader.sample(wo, u, carried),
-            (shader, true) => {
-                let scattered = shader.sample(turned(wo), u, carried)?;
-                Some(Scattered { wi: turned(scattered.wi), ..scattered })
-            }
-        }
-    }
-
-    #[inline]
-    fn lobes(&self) -> Lobe {
-        match self.behind {
-            Behind::Other(shader) => self.front.lobes() | shader.lobes(),
-            _ => self.front.lobes(),
-        }
-    }
-}
-
-/// A material with what can be worked out before any hit.
-#[derive(Clone, Debug)]
-pub struct Finish {
-    front: Recipe,
-    behind: Option<Recipe>,
-    mirrored: bool,
+    Other(Recipe),
 }
 
 #[derive(Clone, Debug)]
 struct Recipe {
     material: Material,
-    /// Set once if no texture varies: then a hit only copies it.
+    /// Set once if no texture varies.
     fixed: Option<Shader>,
     inner_reflectance: Real,
 }
@@ -145,34 +143,28 @@ impl Finish {
     /// The finish of material `id`; `None` if an id names nothing, or a `TwoSided` holds another.
     pub fn new(materials: &[Material], id: MaterialId) -> Option<Self> {
         let material = |id: MaterialId| materials.get(id.0 as usize);
-        match material(id)? {
+        Some(match material(id)? {
+            Material::TwoSided { front, back } if front == back => Self { front: Recipe::new(material(*front)?)?, behind: Behind::Mirrored },
             Material::TwoSided { front, back } => {
-                let mirrored = front == back;
-                let behind = if mirrored { None } else { Some(Recipe::new(material(*back)?)?) };
-                Some(Self { front: Recipe::new(material(*front)?)?, behind, mirrored })
+                Self { front: Recipe::new(material(*front)?)?, behind: Behind::Other(Recipe::new(material(*back)?)?) }
             }
-            one => Some(Self { front: Recipe::new(one)?, behind: None, mirrored: false }),
-        }
+            one => Self { front: Recipe::new(one)?, behind: Behind::Itself },
+        })
     }
 
     /// The surface at `uv`.
-    #[inline]
-    pub fn at(&self, uv: Vec2) -> Surface {
-        let behind = match &self.behind {
-            Some(recipe) => Behind::Other(recipe.at(uv)),
-            None if self.mirrored => Behind::Mirrored,
-            None => Behind::Itself,
-        };
-        Surface { front: self.front.at(uv), behind }
+    #[inline(always)]
+    pub fn at(&self, uv: Vec2) -> Surface<'_> {
+        Surface { finish: self, uv }
     }
 
     /// Whether anything varies over the surface, or about its normal: then hits need uv, and frames that follow u.
     pub fn mapped(&self) -> bool {
         let mapped = |recipe: &Recipe| recipe.fixed.is_none() || recipe.anisotropic();
-        mapped(&self.front) || self.behind.as_ref().is_some_and(mapped)
+        mapped(&self.front) || matches!(&self.behind, Behind::Other(recipe) if mapped(recipe))
     }
 
-    /// Every lobe the surface has at `uv` (0, 0), for what `explain` says of it.
+    /// Every lobe the surface has at uv (0, 0), for what `explain` says of it.
     pub fn lobes(&self) -> Lobe {
         self.at(Vec2::ZERO).lobes()
     }
@@ -189,7 +181,7 @@ impl Recipe {
         };
         let mut recipe = Self { material: material.clone(), fixed: None, inner_reflectance };
         if recipe.textures().iter().all(|texture| matches!(texture, Texture::Constant(_))) {
-            recipe.fixed = Some(recipe.at(Vec2::ZERO));
+            recipe.fixed = Some(recipe.looked_up(Vec2::ZERO));
         }
         Some(recipe)
     }
@@ -222,8 +214,11 @@ impl Recipe {
     }
 
     #[inline]
-    fn at(&self, uv: Vec2) -> Shader {
-        self.fixed.unwrap_or_else(|| self.looked_up(uv))
+    fn lobes(&self, uv: Vec2) -> Lobe {
+        match &self.fixed {
+            Some(shader) => shader.lobes(),
+            None => self.looked_up(uv).lobes(),
+        }
     }
 
     fn looked_up(&self, uv: Vec2) -> Shader {

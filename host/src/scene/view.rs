@@ -61,7 +61,7 @@ impl bidir_kernel::Scene for View<'_> {
     type LightId = LightId;
     type Camera = SceneCamera;
     type Bsdf<'a>
-        = Surface
+        = Surface<'a>
     where
         Self: 'a;
     type Light<'a>
@@ -90,7 +90,7 @@ impl bidir_kernel::Scene for View<'_> {
     }
 
     #[inline]
-    fn bsdf(&self, point: &Point, hit: Hit) -> Surface {
+    fn bsdf(&self, point: &Point, hit: Hit) -> Surface<'_> {
         self.scene.finishes[self.scene.shapes[hit.shape as usize].finish as usize].at(point.uv)
     }
 
