@@ -10,7 +10,7 @@ use crate::{
     point::{Place, Point, Ray, Segment},
     real::{Real, Vec2, Vec3},
     roulette::survive,
-    sampler::{DIMENSIONS_PER_VERTEX, Sampler, Walk},
+    sampler::{DIMENSIONS_PER_VERTEX, Sampler, Walk, start, vertex},
     scene::Scene,
     spectrum::Spectrum,
     strategy::Strategy,
@@ -55,7 +55,7 @@ impl<'s, S: Scene, P: Sampler, F: Film> CameraWalk<'_, 's, S, P, F> {
     fn run(&mut self, raster: Vec2, light_path: &[Option<LightVertex<'s, S>>]) {
         let Strategy { techniques, heuristic, max_depth, .. } = *self.strategy;
         let scene = self.scene;
-        self.sampler.seek(Walk::Camera, 2);
+        self.sampler.seek(Walk::Camera, start::LENS);
         let seen = scene.camera().look(raster, self.sampler.next_pair());
         let mut previous = seen.point;
         let mut direction = seen.direction;
@@ -86,21 +86,23 @@ impl<'s, S: Scene, P: Sampler, F: Film> CameraWalk<'_, 's, S, P, F> {
             if length >= max_depth {
                 return;
             }
-            let Some(vertex) = Vertex::new(point, scene.bsdf(&point, hit), -direction, Carried::Radiance) else { return };
-            if vertex.joins() {
+            let Some(here) = Vertex::new(point, scene.bsdf(&point, hit), -direction, Carried::Radiance) else { return };
+            if here.joins() {
                 let end = End { side: &side, throughput, length };
                 if techniques.uses(Join::NextEvent) {
-                    self.next_event(&vertex, &end);
+                    self.next_event(&here, &end);
                 }
                 for light_vertex in light_path.iter().flatten() {
-                    self.connect(&vertex, &end, light_vertex);
+                    self.connect(&here, &end, light_vertex);
                 }
             }
-            self.sampler.seek(Walk::Camera, length * DIMENSIONS_PER_VERTEX + 3);
-            let Some(bounce) = vertex.bounce([self.sampler.next(), self.sampler.next(), self.sampler.next()]) else { return };
+            let dimension = length.wrapping_mul(DIMENSIONS_PER_VERTEX);
+            self.sampler.seek(Walk::Camera, dimension + vertex::BSDF);
+            let Some(bounce) = here.bounce([self.sampler.next(), self.sampler.next(), self.sampler.next()]) else { return };
             throughput *= bounce.weight;
             eta_scale *= bounce.eta * bounce.eta;
             if length >= self.strategy.rr_depth {
+                self.sampler.seek(Walk::Camera, dimension + vertex::ROULETTE);
                 match survive(throughput.max() * eta_scale, self.sampler.next()) {
                     Some(scale) => throughput = throughput * scale,
                     None => return,
@@ -152,8 +154,9 @@ impl<'s, S: Scene, P: Sampler, F: Film> CameraWalk<'_, 's, S, P, F> {
     fn next_event<B: Bsdf>(&mut self, vertex: &Vertex<B>, end: &End) {
         let count = self.strategy.techniques.next_event;
         for turn in 0..count as u32 {
-            self.sampler.seek(Walk::Camera, end.length * DIMENSIONS_PER_VERTEX + turn * NEXT_EVENT_STRIDE);
-            let (u, pair) = (self.sampler.next(), self.sampler.next_pair());
+            let dimension = end.length.wrapping_mul(DIMENSIONS_PER_VERTEX).wrapping_add(turn.wrapping_mul(NEXT_EVENT_STRIDE));
+            self.sampler.seek(Walk::Camera, dimension + vertex::ENDPOINT);
+            let (pair, u) = (self.sampler.next_pair(), self.sampler.next());
             if let Some(contribution) = self.illuminated(vertex, end, u, pair) {
                 self.film.add(contribution);
             }

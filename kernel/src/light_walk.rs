@@ -10,7 +10,7 @@ use crate::{
     point::{Point, Ray, Segment},
     real::{Real, Vec3},
     roulette::survive,
-    sampler::{DIMENSIONS_PER_VERTEX, Sampler, Walk},
+    sampler::{DIMENSIONS_PER_VERTEX, Sampler, Walk, start, vertex},
     scene::Scene,
     spectrum::Spectrum,
     strategy::Strategy,
@@ -54,11 +54,13 @@ impl<'s, S: Scene, P: Sampler, F: Film> LightWalk<'_, 's, S, P, F> {
     fn run(&mut self, store: &mut [Option<LightVertex<'s, S>>]) -> usize {
         let Strategy { techniques, heuristic, .. } = *self.strategy;
         let scene = self.scene;
-        self.sampler.seek(Walk::Light, 0);
+        self.sampler.seek(Walk::Light, start::LIGHT);
+        let [x, y] = self.sampler.next_pair();
         let Some((id, chance)) = scene.pick_light(None, self.sampler.next()) else { return 0 };
         let light = scene.light(id);
-        let u = [self.sampler.next(), self.sampler.next(), self.sampler.next(), self.sampler.next()];
-        let Some(emission) = light.emit(u) else { return 0 };
+        self.sampler.seek(Walk::Light, start::DIRECTION);
+        let [u, v] = self.sampler.next_pair();
+        let Some(emission) = light.emit([x, y, u, v]) else { return 0 };
         let Emission { point: mut previous, mut direction, weight, exit } = emission;
         let end = f64::from(chance.0) * f64::from(exit.end.value());
         let spread = f64::from(exit.spread.value());
@@ -72,7 +74,7 @@ impl<'s, S: Scene, P: Sampler, F: Film> LightWalk<'_, 's, S, P, F> {
 
         let mut side = Side::start(heuristic, end, if exit.end.can_be_hit() { techniques.light_hit } else { 0.0 });
         let mut throughput = weight / chance.0;
-        let start = throughput.max();
+        let emitted = throughput.max();
         let (mut pdf, mut pdf_rev, mut delta) = (spread, 0.0, false);
         let mut stored = 0;
         let mut length = 1;
@@ -92,26 +94,29 @@ impl<'s, S: Scene, P: Sampler, F: Film> LightWalk<'_, 's, S, P, F> {
                 techniques.connection
             };
             side = side.advance(heuristic, &step(&previous, &point, direction, pdf, pdf_rev, delta, effort));
-            let Some(vertex) = Vertex::new(point, scene.bsdf(&point, hit), -direction, Carried::Importance) else { return stored };
-            self.sampler.seek(Walk::Light, length * DIMENSIONS_PER_VERTEX);
-            let lens = self.sampler.next_pair();
-            let bounce = vertex.bounce([self.sampler.next(), self.sampler.next(), self.sampler.next()]);
-            if vertex.joins() {
+            let Some(here) = Vertex::new(point, scene.bsdf(&point, hit), -direction, Carried::Importance) else { return stored };
+            let dimension = length.wrapping_mul(DIMENSIONS_PER_VERTEX);
+            self.sampler.seek(Walk::Light, dimension + vertex::BSDF);
+            let bounce = here.bounce([self.sampler.next(), self.sampler.next(), self.sampler.next()]);
+            if here.joins() {
                 let hidden = scene.hides_emitters() && scene.light_id_at(hit).is_some();
                 if techniques.uses(Join::LensSplat) && !hidden {
-                    self.splat(&vertex, length, &side, throughput, lens);
+                    self.sampler.seek(Walk::Light, dimension + vertex::ENDPOINT);
+                    let lens = self.sampler.next_pair();
+                    self.splat(&here, length, &side, throughput, lens);
                 }
                 if techniques.uses(Join::Connection)
                     && let Some(slot) = store.get_mut(stored)
                 {
-                    *slot = Some(LightVertex { vertex, throughput, side, length });
+                    *slot = Some(LightVertex { vertex: here, throughput, side, length });
                     stored += 1;
                 }
             }
             let Some(bounce) = bounce else { return stored };
             throughput *= bounce.weight;
             if length >= self.strategy.rr_depth {
-                match survive(throughput.max() / start, self.sampler.next()) {
+                self.sampler.seek(Walk::Light, dimension + vertex::ROULETTE);
+                match survive(throughput.max() / emitted, self.sampler.next()) {
                     Some(scale) => throughput = throughput * scale,
                     None => return stored,
                 }
@@ -125,7 +130,7 @@ impl<'s, S: Scene, P: Sampler, F: Film> LightWalk<'_, 's, S, P, F> {
     /// (s, t) = (1, 1): the walk's own first vertex, shown to the lens. Next event's choice of light has no part in it.
     fn splat_light(&mut self, light: &S::Light<'s>, point: &Point, chance: Real) {
         let Strategy { techniques, heuristic, .. } = *self.strategy;
-        self.sampler.seek(Walk::Light, 5);
+        self.sampler.seek(Walk::Light, start::SPLAT);
         let lens = self.sampler.next_pair();
         let Some(seen) = self.scene.camera().see(point, lens) else { return };
         let exit = light.emitted(point, -seen.direction);

@@ -26,8 +26,31 @@ pub trait Sampler {
     }
 }
 
-/// How many dimensions a walk's start and each of its vertices own.
+/// How many dimensions a walk's start and each of its vertices own. What belongs together lies within four from a multiple of
+/// four on, so that a sampler that stratifies four dimensions at a time stratifies it.
 pub const DIMENSIONS_PER_VERTEX: u32 = 8;
+
+/// The dimensions of a walk's start.
+pub(crate) mod start {
+    /// Of a camera walk: the lens, two; the two before are the caller's.
+    pub const LENS: u32 = 2;
+    /// Of a light walk: the point on the light, two, and the choice of the light.
+    pub const LIGHT: u32 = 0;
+    /// Of a light walk: the direction, two.
+    pub const DIRECTION: u32 = 4;
+    /// Of a light walk: the lens for its own first vertex, two.
+    pub const SPLAT: u32 = 6;
+}
+
+/// The dimensions of a vertex, from the vertex's first one on.
+pub(crate) mod vertex {
+    /// Of a camera walk: next event's point, two, and its choice of the light. Of a light walk: the lens, two.
+    pub const ENDPOINT: u32 = 0;
+    /// Russian roulette.
+    pub const ROULETTE: u32 = 3;
+    /// The BSDF, three.
+    pub const BSDF: u32 = 4;
+}
 
 /// Independent numbers: SplitMix64 (Steele, Lea & Flood 2014) as a function of a counter, so that any dimension of any sample is one hash away.
 #[derive(Clone, Copy, Debug)]

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 
-use crate::plan::Named;
+use crate::{plan::Named, render::Numbers};
 
 /// A bidirectional path tracer for Mitsuba 3 scenes.
 #[derive(Debug, Parser)]
@@ -67,6 +67,9 @@ pub struct Render {
     /// Of the random numbers
     #[arg(long, value_name = "N")]
     pub seed: Option<u64>,
+    /// Which random numbers
+    #[arg(long, value_enum, default_value_t)]
+    pub sampler: Numbers,
     /// Render threads; as many as the machine has, unless told
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096))]
     pub threads: Option<u32>,

@@ -76,6 +76,7 @@ pub(super) fn run(arguments: &Render) -> Result<Outcome> {
     let job = Job {
         strategy: plan.strategy(&description.integrator),
         seed: arguments.seed.unwrap_or(description.seed),
+        numbers: arguments.sampler,
         threads: thread_count(arguments.threads),
         target,
         width: description.film.width,
@@ -166,6 +167,7 @@ fn stats(
         plan: *plan,
         threads: job.threads,
         seed: job.seed,
+        sampler: job.numbers,
         geometry: Geometry { primitives: tree.primitives, degenerate: scene.degenerate(), bytes: tree.bytes },
         version: env!("CARGO_PKG_VERSION"),
         interrupted: status.interrupted,

@@ -7,6 +7,7 @@ use serde::Serialize;
 use crate::{
     error::{Error, Result},
     plan::Plan,
+    render::Numbers,
     scene::view::RayCounts,
 };
 
@@ -43,6 +44,8 @@ pub struct Stats {
     pub threads: usize,
     /// Of the random numbers.
     pub seed: u64,
+    /// Which random numbers.
+    pub sampler: Numbers,
     /// The ray caster's tree.
     pub geometry: Geometry,
     /// Of this program.

@@ -3,6 +3,7 @@
 //! A pass is a whole number of samples for every pixel. What is decided while rendering (to stop, to report) is decided between passes,
 //! so that an image depends on scene, seed, samples and plan alone.
 
+mod numbers;
 mod passes;
 
 use std::{
@@ -10,8 +11,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use bidir_kernel::{LightVertex, Strategy, Vec2, sample, sampler::Independent};
-use bidir_kernel::{Sampler, Walk};
+use bidir_kernel::{LightVertex, Sampler, Strategy, Vec2, Walk, sample};
 
 use crate::{
     film::{Exposure, Store},
@@ -21,7 +21,10 @@ use crate::{
     },
 };
 
+pub use numbers::Numbers;
 pub use passes::pass_end;
+
+use numbers::{Apart, Sobol, Source};
 
 /// The longest path that stored light vertices are kept for where the scene sets no limit; longer ones are left to s = 0 and s = 1.
 pub const LONGEST_JOINED: u32 = 64;
@@ -44,6 +47,8 @@ pub struct Job {
     pub strategy: Strategy,
     /// Of the random numbers.
     pub seed: u64,
+    /// Which random numbers.
+    pub numbers: Numbers,
     /// At least 1.
     pub threads: usize,
     /// When to stop.
@@ -110,7 +115,7 @@ pub fn render<S: Store>(
 /// Renders every unit whose sample is below `end`; returns the samples of which a unit was begun. `None` if no thread could do any work.
 fn run<S: Store>(scene: &Scene, film: &S, job: &Job, end: u32, interrupt: Option<&AtomicBool>, status: &mut Status) -> Option<u32> {
     let workers: Vec<Option<Worked>> = std::thread::scope(|scope| {
-        let workers: Vec<_> = (0..job.threads.max(1)).map(|_| scope.spawn(|| work(scene, film, job, end, interrupt))).collect();
+        let workers: Vec<_> = (0..job.threads.max(1)).map(|_| scope.spawn(|| chosen(scene, film, job, end, interrupt))).collect();
         workers.into_iter().map(|worker| worker.join().ok()).collect()
     });
     let mut begun = status.samples;
@@ -130,7 +135,14 @@ struct Worked {
     rays: RayCounts,
 }
 
-fn work<S: Store>(scene: &Scene, film: &S, job: &Job, end: u32, interrupt: Option<&AtomicBool>) -> Worked {
+fn chosen<S: Store>(scene: &Scene, film: &S, job: &Job, end: u32, interrupt: Option<&AtomicBool>) -> Worked {
+    match job.numbers {
+        Numbers::Sobol => work::<S, Sobol>(scene, film, job, end, interrupt),
+        Numbers::Independent => work::<S, Apart>(scene, film, job, end, interrupt),
+    }
+}
+
+fn work<S: Store, N: Source>(scene: &Scene, film: &S, job: &Job, end: u32, interrupt: Option<&AtomicBool>) -> Worked {
     let clock = cpu_time::ThreadTime::now();
     let view = View::new(scene);
     let mut light_path = light_path(&job.strategy);
@@ -139,9 +151,10 @@ fn work<S: Store>(scene: &Scene, film: &S, job: &Job, end: u32, interrupt: Optio
         let Some(mut buffer) = film.claim(end) else { break };
         let unit = buffer.unit();
         begun = begun.max(unit.sample + 1);
+        let source = N::new(job.seed, unit.sample);
         for (x, y) in film.pixels(&unit) {
             let pixel = u64::from(y) * u64::from(job.width) + u64::from(x);
-            let mut numbers = Independent::new(job.seed, pixel, u64::from(unit.sample));
+            let mut numbers = source.pixel(pixel);
             numbers.seek(Walk::Camera, 0);
             let [dx, dy] = numbers.next_pair();
             let raster = Vec2::new(x as f32 + dx, y as f32 + dy);

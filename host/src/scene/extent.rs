@@ -220,7 +220,12 @@ impl Extent for Ball {
         let Some((one_minus_cos, sin_squared)) = self.cone(lit) else {
             let (point, PerArea(p)) = self.sample(u);
             let (direction, squared) = lit.direction_to(&point)?;
-            return Some(Toward { point, density: PerArea(p), direction, weight: math::dot(point.normal, direction).abs() / (squared * p) });
+            return Some(Toward {
+                point,
+                density: PerArea(p),
+                direction,
+                weight: math::dot(point.normal, direction).abs() / (squared * p),
+            });
         };
         let w = warp::cone(u, one_minus_cos);
         let sin_theta_squared = w.x * w.x + w.y * w.y;

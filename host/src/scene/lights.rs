@@ -11,7 +11,10 @@ use bidir_kernel::{
 };
 use bidir_standard as standard;
 
-use crate::scene::{description::EnvironmentImage, extent::{Ellipse, LightExtent, Parallelogram}};
+use crate::scene::{
+    description::EnvironmentImage,
+    extent::{Ellipse, LightExtent, Parallelogram},
+};
 
 /// A light's name: its index.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -173,7 +176,9 @@ fn solid_angle(extent: &LightExtent, lit: &Point) -> Real {
     };
     let round = |center: Vec3, area: Real| 4.0 * PI * area / (area + 16.0 * PI * distance_squared(center, lit));
     match extent {
-        LightExtent::Parallelogram(Parallelogram(shape)) | LightExtent::Ellipse(Ellipse(shape)) => flat(shape.center, shape.frame.z, shape.area),
+        LightExtent::Parallelogram(Parallelogram(shape)) | LightExtent::Ellipse(Ellipse(shape)) => {
+            flat(shape.center, shape.frame.z, shape.area)
+        }
         LightExtent::Ball(ball) => round(ball.center, extent.area()),
         LightExtent::Tube(tube) => round(tube.base + tube.axis * 0.5, extent.area()),
         LightExtent::Surface(surface) => round(surface.center, extent.area()),

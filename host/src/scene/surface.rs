@@ -144,7 +144,9 @@ impl Finish {
     pub fn new(materials: &[Material], id: MaterialId) -> Option<Self> {
         let material = |id: MaterialId| materials.get(id.0 as usize);
         Some(match material(id)? {
-            Material::TwoSided { front, back } if front == back => Self { front: Recipe::new(material(*front)?)?, behind: Behind::Mirrored },
+            Material::TwoSided { front, back } if front == back => {
+                Self { front: Recipe::new(material(*front)?)?, behind: Behind::Mirrored }
+            }
             Material::TwoSided { front, back } => {
                 Self { front: Recipe::new(material(*front)?)?, behind: Behind::Other(Recipe::new(material(*back)?)?) }
             }

@@ -1,0 +1,173 @@
+//! Where a sample's random numbers come from.
+
+use bidir_kernel::{
+    Sampler, Walk,
+    sampler::{DIMENSIONS_PER_VERTEX, Independent},
+};
+use serde::Serialize;
+use sobol_burley::parts;
+
+/// Kinds of random numbers.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Numbers {
+    /// Owen-scrambled Sobol' points: the samples of a pixel keep their distance from each other.
+    #[default]
+    Sobol,
+    /// Each number for itself.
+    Independent,
+}
+
+/// The random numbers of one sample of every pixel.
+pub(super) trait Source {
+    /// Those of one pixel.
+    type OfPixel<'a>: Sampler
+    where
+        Self: 'a;
+
+    /// Sample `index` under `seed`.
+    fn new(seed: u64, index: u32) -> Self;
+
+    /// The numbers of a pixel.
+    fn pixel(&self, pixel: u64) -> Self::OfPixel<'_>;
+}
+
+/// [`Numbers::Independent`].
+pub(super) struct Apart {
+    seed: u64,
+    index: u32,
+}
+
+impl Source for Apart {
+    type OfPixel<'a> = Independent;
+
+    fn new(seed: u64, index: u32) -> Self {
+        Self { seed, index }
+    }
+
+    fn pixel(&self, pixel: u64) -> Independent {
+        Independent::new(self.seed, pixel, u64::from(self.index))
+    }
+}
+
+/// How many vertices of a walk, its start included, get Sobol' points; what comes later is independent: there, little is left to gain.
+const STRATIFIED_VERTICES: u32 = 6;
+/// Dimensions of each walk that get Sobol' points.
+const STRATIFIED: u32 = STRATIFIED_VERTICES * DIMENSIONS_PER_VERTEX;
+/// How long the sequence is; then it begins again, scrambled anew.
+const LENGTH: u32 = 1 << 16;
+
+/// Points of the Sobol' sequence for the first vertices of each walk, scrambled apart for each pixel (Burley 2020, "Practical Hash-based
+/// Owen Scrambling"). Samples of even and of odd number each go through the sequence under a scramble of their own: the two
+/// halves of a render stay independent, and with them its estimate of its own error.
+pub(super) struct Sobol {
+    apart: Apart,
+    seed: u32,
+    /// The unscrambled point, its bits reversed: the camera walk's dimensions, then the light walk's. All pixels share it.
+    point: [u32; 2 * STRATIFIED as usize],
+}
+
+/// The Sobol' points of one pixel's sample.
+#[derive(Clone, Copy)]
+pub(super) struct Scrambled<'a> {
+    point: &'a [u32; 2 * STRATIFIED as usize],
+    seed: u32,
+    /// Into `point`; at its end or beyond, numbers come from `rest`.
+    next: u32,
+    rest: Independent,
+}
+
+impl Source for Sobol {
+    type OfPixel<'a> = Scrambled<'a>;
+
+    fn new(seed: u64, index: u32) -> Self {
+        let (half, turn) = (index % 2, index / 2);
+        let words = [seed as u32, (seed >> 32) as u32, half, turn / LENGTH];
+        let reversed = (turn % LENGTH).reverse_bits();
+        Self {
+            apart: Apart { seed, index },
+            seed: words.into_iter().fold(0, |hashed, word| parts::hash(hashed.wrapping_add(0x9e37_79b9) ^ word)),
+            point: std::array::from_fn(|dimension| parts::sobol_rev(reversed, dimension as u32)),
+        }
+    }
+
+    #[inline]
+    fn pixel(&self, pixel: u64) -> Scrambled<'_> {
+        let seed = parts::hash(parts::hash(self.seed ^ pixel as u32) ^ (pixel >> 32) as u32);
+        Scrambled { point: &self.point, seed, next: 0, rest: self.apart.pixel(pixel) }
+    }
+}
+
+impl Sampler for Scrambled<'_> {
+    #[inline]
+    fn seek(&mut self, walk: Walk, dimension: u32) {
+        if dimension < STRATIFIED {
+            self.next = walk as u32 * STRATIFIED + dimension;
+        } else {
+            self.next = u32::MAX;
+            self.rest.seek(walk, dimension);
+        }
+    }
+
+    #[inline]
+    fn next(&mut self) -> f32 {
+        let Some(&point) = self.point.get(self.next as usize) else { return self.rest.next() };
+        let scramble = parts::hash(self.seed.wrapping_add(self.next.wrapping_mul(0x9e37_79b9)));
+        self.next += 1;
+        // The upper 24 bits fill an f32 exactly.
+        (parts::owen_scramble_rev(point, scramble).reverse_bits() >> 8) as f32 * (1.0 / 16_777_216.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn numbers(walk: Walk, dimension: u32, samples: u32) -> Vec<f32> {
+        let number = |index| {
+            let source = Sobol::new(1, index);
+            let mut sobol = source.pixel(7);
+            sobol.seek(walk, dimension);
+            sobol.next()
+        };
+        (0..samples).map(number).collect()
+    }
+
+    #[test]
+    fn each_half_of_the_samples_puts_one_number_into_each_stratum() {
+        for (walk, dimension) in [(Walk::Camera, 0), (Walk::Camera, 12), (Walk::Light, 5), (Walk::Light, 40)] {
+            let all = numbers(walk, dimension, 128);
+            for half in [0, 1] {
+                let mut strata: Vec<_> = all.iter().skip(half).step_by(2).map(|u| (u * 64.0) as usize).collect();
+                strata.sort_unstable();
+                assert_eq!(strata, (0..64).collect::<Vec<_>>());
+            }
+        }
+    }
+
+    #[test]
+    fn walks_halves_and_pixels_do_not_know_of_each_other() {
+        let correlation = |a: &[f32], b: &[f32]| a.iter().zip(b).map(|(a, b)| 12.0 * (a - 0.5) * (b - 0.5)).sum::<f32>() / a.len() as f32;
+        // σ of the mean of n products of independent uniform numbers, each scaled to variance 1, is 1/√n; stratified ones vary less.
+        let n = 4096;
+        let camera = numbers(Walk::Camera, 4, n);
+        let light = numbers(Walk::Light, 4, n);
+        assert!(correlation(&camera, &light).abs() < 4.0 / (n as f32).sqrt());
+        let (even, odd): (Vec<_>, Vec<_>) = camera.chunks(2).map(|pair| (pair[0], pair[1])).unzip();
+        assert!(correlation(&even, &odd).abs() < 4.0 / (even.len() as f32).sqrt());
+    }
+
+    #[test]
+    fn numbers_do_not_depend_on_what_was_asked_before() {
+        let source = Sobol::new(3, 9);
+        let mut sobol = source.pixel(5);
+        sobol.seek(Walk::Camera, 9);
+        let first = sobol.next();
+        sobol.seek(Walk::Light, 1 << 20);
+        let far = sobol.next();
+        sobol.seek(Walk::Camera, 8);
+        let pair = sobol.next_pair();
+        sobol.seek(Walk::Light, 1 << 20);
+        assert_eq!((first, far), (pair[1], sobol.next()));
+    }
+}
