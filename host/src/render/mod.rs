@@ -88,7 +88,7 @@ pub fn render<S: Store>(
         Target::Time(_) | Target::Error(_) => u32::MAX,
     };
     while status.samples < last {
-        let end = pass_end(status.samples).min(last);
+        let end = pass_end(status.samples).min(last).min(affordable(&status, job.target));
         let Some(claimed) = run(scene, film, job, end, Some(interrupt), &mut status) else { return status };
         if claimed < end || interrupt.load(Ordering::Relaxed) {
             // Finish the sample that some pixels have already.
@@ -102,7 +102,7 @@ pub fn render<S: Store>(
         let error = report(&status);
         let done = match job.target {
             Target::Samples(_) => false,
-            Target::Time(limit) => status.elapsed >= limit,
+            Target::Time(limit) => status.elapsed.as_secs_f64() * (1.0 + 0.5 / f64::from(status.samples)) >= limit.as_secs_f64(),
             Target::Error(goal) => error.is_some_and(|error| error <= goal),
         };
         if done || status.interrupted {
@@ -110,6 +110,18 @@ pub fn render<S: Store>(
         }
     }
     status
+}
+
+/// How many samples will be on the film when the time is up, at the pace so far; at least one more.
+fn affordable(status: &Status, target: Target) -> u32 {
+    match target {
+        Target::Time(limit) if status.samples > 0 => {
+            let per_sample = status.elapsed.as_secs_f64() / f64::from(status.samples);
+            let more = (limit.saturating_sub(status.elapsed).as_secs_f64() / per_sample) as u32;
+            status.samples.saturating_add(more.max(1))
+        }
+        _ => u32::MAX,
+    }
 }
 
 /// Renders every unit whose sample is below `end`; returns the samples of which a unit was begun. `None` if no thread could do any work.

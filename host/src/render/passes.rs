@@ -1,7 +1,7 @@
 //! Where passes end.
 
 /// The samples per pixel at the end of the pass that begins with `samples`: 1, 2, 4, … 32, then a quarter more each time.
-/// A render that stops at the end of any pass is the one that was asked for that many samples.
+/// The film adds samples up in one order, so that passes may end anywhere without changing the image.
 pub fn pass_end(samples: u32) -> u32 {
     if samples < 32 { (samples + 1).next_power_of_two().max(1) } else { samples.saturating_add(samples / 4) }
 }
