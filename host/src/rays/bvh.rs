@@ -136,7 +136,8 @@ impl Bvh {
         // Small trees get a small stack: clearing a large one would cost as much as the ray.
         let nearest = match self.most_waiting {
             0..=16 => self.descend::<ANY>(&probe, root, &mut [NONE; 16]),
-            17..=64 => self.descend::<ANY>(&probe, root, &mut [NONE; 64]),
+            17..=32 => self.descend::<ANY>(&probe, root, &mut [NONE; 32]),
+            33..=64 => self.descend::<ANY>(&probe, root, &mut [NONE; 64]),
             most => self.descend::<ANY>(&probe, root, &mut vec![NONE; most]),
         };
         nearest.found().then_some(nearest)
