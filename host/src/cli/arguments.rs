@@ -112,6 +112,9 @@ pub struct Techniques {
     /// Of the random numbers
     #[arg(long, value_name = "N")]
     pub seed: Option<u64>,
+    /// Which random numbers
+    #[arg(long, value_enum, default_value_t)]
+    pub sampler: Numbers,
     /// Render threads; as many as the machine has, unless told
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096))]
     pub threads: Option<u32>,

@@ -102,8 +102,6 @@ pub(super) fn run(arguments: &Render) -> Result<Outcome> {
     if !arguments.quiet {
         let Status { samples, elapsed, .. } = status;
         println!("{samples} samples per pixel in {:.1} s: {}", elapsed.as_secs_f64(), output.display());
-    } else {
-        println!("{}", output.display());
     }
     Ok(if status.interrupted { Outcome::Interrupted } else { Outcome::Done })
 }

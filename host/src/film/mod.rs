@@ -37,6 +37,7 @@ mod buffer;
 mod develop;
 pub mod filter;
 mod layout;
+pub mod picture;
 mod pyramid;
 mod sequencer;
 mod unit;

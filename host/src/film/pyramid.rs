@@ -67,13 +67,20 @@ impl Pyramid {
     pub fn new(settings: &FilmSettings, longest: u32) -> Result<Self> {
         let layout = Layout::new(settings)?;
         let pixels = layout.pixels();
-        let cells = (u64::from(longest) < 1 << 12).then(|| layers(longest) as usize).and_then(|n| n.checked_mul(pixels));
-        let Some(cells) = cells.filter(|&n| n <= MAX_BYTES / size_of::<[f64; 6]>()) else {
+        let most = MAX_BYTES / size_of::<[f64; 6]>() / pixels.max(1);
+        let cells = (u64::from(longest) < 1 << 12).then(|| layers(longest) as usize).filter(|&n| n <= most);
+        let Some(cells) = cells.map(|n| n * pixels) else {
             let thing = format!(
-                "the techniques of paths up to length {longest} at {}×{} pixels need too much memory",
-                layout.crop.width, layout.crop.height
+                "the techniques of paths up to length {longest} at {}×{} pixels need more than {} GiB of memory",
+                layout.crop.width,
+                layout.crop.height,
+                MAX_BYTES >> 30
             );
-            return Err(Error::new(thing, "show a smaller image or shorter paths"));
+            let remedy = match (1..longest.min(1 << 12)).rev().find(|&length| layers(length) as usize <= most) {
+                Some(fits) => format!("lower the longest path to {fits} (--longest {fits}), or the film's width and height"),
+                None => "lower the film's width and height".to_owned(),
+            };
+            return Err(Error::new(thing, remedy));
         };
         let sums = Sums { values: vec![[0.0; 6]; cells], samples: vec![0; pixels], total: 0, refused: 0 };
         let dispatch = Dispatch::new(layout.crop.width, layout.crop.height);
@@ -266,7 +273,9 @@ mod tests {
         let crop = Crop { x: 0, y: 0, width: 2000, height: 2000 };
         let settings = FilmSettings { width: 2000, height: 2000, crop, filter: Filter::Box };
         for longest in [30, u32::MAX] {
-            assert!(Pyramid::new(&settings, longest).is_err());
+            // 22 layers of 4e6 pixels of 48 bytes fit; up to length 4 there are 18, up to 5 there are 25.
+            let error = Pyramid::new(&settings, longest).expect_err("too large").to_string();
+            assert!(error.contains("--longest 4"), "{error}");
         }
     }
 }

@@ -1,6 +1,9 @@
 //! Images in memory, and the files they come from and go to.
 
+pub mod montage;
 pub mod read;
+pub mod resize;
+pub mod text;
 pub mod trim;
 pub mod write;
 

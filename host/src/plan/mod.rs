@@ -1,4 +1,10 @@
-//! The plan: which techniques a render runs, and how they share a path.
+//! The plan: which techniques a render runs, how they share a path, and what it rests on: what a scene holds ([`contents`]),
+//! what can happen to light in it ([`effects`]), which joins that leaves ([`joins`]), and what none of them finds ([`gaps`]).
+
+pub mod contents;
+pub mod effects;
+pub mod gaps;
+pub mod joins;
 
 use std::path::Path;
 

@@ -278,6 +278,26 @@ pub enum Material {
     },
 }
 
+impl Material {
+    /// Every colour and roughness of it that may vary; a twosided one has none of its own.
+    pub fn textures(&self) -> Vec<&Texture> {
+        match self {
+            Self::Diffuse { reflectance } => vec![reflectance],
+            Self::Conductor { specular_reflectance, .. } => vec![specular_reflectance],
+            Self::RoughConductor { specular_reflectance, alpha_u, alpha_v, .. } => vec![specular_reflectance, alpha_u, alpha_v],
+            Self::Dielectric { specular_reflectance, specular_transmittance, .. }
+            | Self::ThinDielectric { specular_reflectance, specular_transmittance, .. } => {
+                vec![specular_reflectance, specular_transmittance]
+            }
+            Self::RoughDielectric { specular_reflectance, specular_transmittance, alpha_u, alpha_v, .. } => {
+                vec![specular_reflectance, specular_transmittance, alpha_u, alpha_v]
+            }
+            Self::Plastic { diffuse_reflectance, specular_reflectance, .. } => vec![diffuse_reflectance, specular_reflectance],
+            Self::Null | Self::TwoSided { .. } => vec![],
+        }
+    }
+}
+
 /// A shape, its surface and its light.
 #[derive(Clone, Debug)]
 pub struct Shape {

@@ -182,27 +182,10 @@ impl Recipe {
             _ => 0.0,
         };
         let mut recipe = Self { material: material.clone(), fixed: None, inner_reflectance };
-        if recipe.textures().iter().all(|texture| matches!(texture, Texture::Constant(_))) {
+        if recipe.material.textures().iter().all(|texture| matches!(texture, Texture::Constant(_))) {
             recipe.fixed = Some(recipe.looked_up(Vec2::ZERO));
         }
         Some(recipe)
-    }
-
-    fn textures(&self) -> Vec<&Texture> {
-        match &self.material {
-            Material::Diffuse { reflectance } => vec![reflectance],
-            Material::Conductor { specular_reflectance, .. } => vec![specular_reflectance],
-            Material::RoughConductor { specular_reflectance, alpha_u, alpha_v, .. } => vec![specular_reflectance, alpha_u, alpha_v],
-            Material::Dielectric { specular_reflectance, specular_transmittance, .. }
-            | Material::ThinDielectric { specular_reflectance, specular_transmittance, .. } => {
-                vec![specular_reflectance, specular_transmittance]
-            }
-            Material::RoughDielectric { specular_reflectance, specular_transmittance, alpha_u, alpha_v, .. } => {
-                vec![specular_reflectance, specular_transmittance, alpha_u, alpha_v]
-            }
-            Material::Plastic { diffuse_reflectance, specular_reflectance, .. } => vec![diffuse_reflectance, specular_reflectance],
-            Material::Null | Material::TwoSided { .. } => vec![],
-        }
     }
 
     fn anisotropic(&self) -> bool {

@@ -1,0 +1,267 @@
+//! What a scene holds, counted.
+
+use std::collections::BTreeMap;
+
+use bidir_kernel::Lobe;
+use serde::Serialize;
+
+use super::effects::{lobes, sides};
+use crate::scene::{
+    Scene,
+    description::{Crop, Description, Filter, Geometry, Integrator, Material, MaterialId, SensorKind, Texture},
+    lights::LightSource,
+};
+
+/// A scene in numbers.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Contents {
+    /// The camera and its film.
+    pub camera: Camera,
+    /// How far paths go.
+    pub integrator: Depths,
+    /// Samples per pixel that the scene asks for.
+    pub spp: u32,
+    /// Of the random numbers.
+    pub seed: u64,
+    /// By kind, only those there are.
+    pub shapes: Vec<Shapes>,
+    /// What rays are cast at: triangles and other shapes.
+    pub primitives: usize,
+    /// Triangles and shapes without area, dropped.
+    pub degenerate: usize,
+    /// By kind and lobes, only those that a shape wears.
+    pub materials: Vec<Materials>,
+    /// Materials that no shape wears.
+    pub unused_materials: usize,
+    /// By kind, only those that shine.
+    pub lights: Vec<Lights>,
+    /// Lights without power, left out.
+    pub black_lights: usize,
+}
+
+/// The camera and its film.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Camera {
+    /// pinhole, thin lens or orthographic.
+    pub kind: &'static str,
+    /// Horizontal field of view, degrees.
+    pub fov_x: Option<f64>,
+    /// World units; of a thin lens.
+    pub aperture_radius: Option<f64>,
+    /// World units; of a thin lens.
+    pub focus_distance: Option<f64>,
+    /// Where the scene writes it.
+    pub near_clip: Option<f64>,
+    /// Where the scene writes it.
+    pub far_clip: Option<f64>,
+    /// The whole image, pixels.
+    pub width: u32,
+    /// The whole image, pixels.
+    pub height: u32,
+    /// x, y, width, height of what is rendered, if that is not the whole image.
+    pub crop: Option<[u32; 4]>,
+    /// The reconstruction filter.
+    pub filter: String,
+}
+
+/// How far paths go.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Depths {
+    /// The `type` as written.
+    pub kind: String,
+    /// Segments; `None` is unlimited.
+    pub max_depth: Option<u32>,
+    /// Segments after which roulette begins.
+    pub rr_depth: u32,
+    /// Whether the lens sees through emitters.
+    pub hide_emitters: bool,
+}
+
+/// Shapes of one kind.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Shapes {
+    /// mesh, rectangle, disk, sphere or cylinder.
+    pub kind: &'static str,
+    /// How many.
+    pub count: usize,
+    /// Of all meshes together, as written.
+    pub triangles: usize,
+}
+
+/// Materials of one kind with the same lobes.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Materials {
+    /// As the scene language calls it; a twosided one by what is on its sides.
+    pub kind: String,
+    /// How many.
+    pub count: usize,
+    /// How many shapes wear them.
+    pub shapes: usize,
+    /// Every lobe they have anywhere.
+    pub lobes: Vec<&'static str>,
+    /// How many of them vary over the surface.
+    pub textured: usize,
+}
+
+/// Lights of one kind.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Lights {
+    /// As the scene language calls it.
+    pub kind: &'static str,
+    /// How many.
+    pub count: usize,
+    /// W, mean of the bands; of far away ones, what they send through a disk around the scene.
+    pub power: f64,
+    /// Of the power of all lights.
+    pub share: f64,
+}
+
+impl Contents {
+    /// Those of a scene, and of the description it was built from.
+    pub fn of(description: &Description, scene: &Scene) -> Self {
+        let Integrator { kind, max_depth, rr_depth, hide_emitters } = description.integrator.clone();
+        let (materials, worn) = materials(description);
+        let lights = lights(scene);
+        let shining: usize = lights.iter().map(|light| light.count).sum();
+        let written = description.emitters.len() + description.shapes.iter().filter(|shape| shape.radiance.is_some()).count();
+        Self {
+            camera: camera(description),
+            integrator: Depths { kind, max_depth, rr_depth, hide_emitters },
+            spp: description.samples_per_pixel,
+            seed: description.seed,
+            shapes: shapes(description),
+            primitives: scene.build_stats().primitives,
+            degenerate: scene.degenerate(),
+            materials,
+            unused_materials: description.materials.len() - worn,
+            lights,
+            black_lights: written.saturating_sub(shining),
+        }
+    }
+}
+
+fn camera(description: &Description) -> Camera {
+    let (sensor, film) = (&description.sensor, &description.film);
+    let Crop { x, y, width, height } = film.crop;
+    let (kind, fov_x, lens) = match sensor.kind {
+        SensorKind::Orthographic => ("orthographic", None, None),
+        SensorKind::Perspective { fov_x, aperture_radius, focus_distance } if aperture_radius > 0.0 => {
+            ("thin lens", Some(fov_x), Some((aperture_radius, focus_distance)))
+        }
+        SensorKind::Perspective { fov_x, .. } => ("pinhole", Some(fov_x), None),
+    };
+    Camera {
+        kind,
+        fov_x,
+        aperture_radius: lens.map(|lens| lens.0),
+        focus_distance: lens.map(|lens| lens.1),
+        near_clip: sensor.near_clip,
+        far_clip: sensor.far_clip,
+        width: film.width,
+        height: film.height,
+        crop: ((width, height) != (film.width, film.height)).then_some([x, y, width, height]),
+        filter: match film.filter {
+            Filter::Box => "box".to_owned(),
+            Filter::Tent { radius } => format!("tent, radius {radius}"),
+            Filter::Gaussian { stddev } => format!("gaussian, stddev {stddev}"),
+        },
+    }
+}
+
+fn shapes(description: &Description) -> Vec<Shapes> {
+    let mut kinds = ["mesh", "rectangle", "disk", "sphere", "cylinder"].map(|kind| Shapes { kind, count: 0, triangles: 0 });
+    for shape in &description.shapes {
+        let (kind, triangles) = match &shape.geometry {
+            Geometry::Mesh { mesh, .. } => (0, mesh.triangles.len()),
+            Geometry::Rectangle { .. } => (1, 0),
+            Geometry::Disk { .. } => (2, 0),
+            Geometry::Sphere { .. } => (3, 0),
+            Geometry::Cylinder { .. } => (4, 0),
+        };
+        kinds[kind].count += 1;
+        kinds[kind].triangles += triangles;
+    }
+    kinds.into_iter().filter(|kind| kind.count > 0).collect()
+}
+
+/// The materials that shapes wear, and how many of the description's they account for: the sides of a twosided one are in use with it.
+fn materials(description: &Description) -> (Vec<Materials>, usize) {
+    let all = &description.materials;
+    let mut wearers: BTreeMap<u32, usize> = BTreeMap::new();
+    for shape in &description.shapes {
+        *wearers.entry(shape.material.0).or_default() += 1;
+    }
+    let mut used: Vec<u32> = wearers.keys().copied().collect();
+    let mut kinds: Vec<Materials> = Vec::new();
+    for (&id, &shapes) in &wearers {
+        let id = MaterialId(id);
+        if let Some(Material::TwoSided { front, back }) = all.get(id.0 as usize) {
+            used.extend([front.0, back.0]);
+        }
+        let (kind, lobes) = (kind(all, id), lobe_names(lobes(all, id)));
+        let varies = |material: &&Material| material.textures().iter().any(|texture| !matches!(texture, Texture::Constant(_)));
+        let textured = usize::from(sides(all, id).iter().any(varies));
+        match kinds.iter_mut().find(|known| known.kind == kind && known.lobes == lobes) {
+            Some(known) => {
+                known.count += 1;
+                known.shapes += shapes;
+                known.textured += textured;
+            }
+            None => kinds.push(Materials { kind, count: 1, shapes, lobes, textured }),
+        }
+    }
+    used.sort_unstable();
+    used.dedup();
+    (kinds, used.len())
+}
+
+fn kind(materials: &[Material], id: MaterialId) -> String {
+    let name = |material: &Material| match material {
+        Material::Diffuse { .. } => "diffuse",
+        Material::Conductor { .. } => "conductor",
+        Material::RoughConductor { .. } => "roughconductor",
+        Material::Dielectric { .. } => "dielectric",
+        Material::ThinDielectric { .. } => "thindielectric",
+        Material::RoughDielectric { .. } => "roughdielectric",
+        Material::Plastic { .. } => "plastic",
+        Material::Null => "null",
+        Material::TwoSided { .. } => "twosided",
+    };
+    let twosided = matches!(materials.get(id.0 as usize), Some(Material::TwoSided { .. }));
+    let mut names: Vec<_> = sides(materials, id).into_iter().map(name).collect();
+    names.dedup();
+    if twosided { format!("twosided {}", names.join(" and ")) } else { names.concat() }
+}
+
+/// The lobes of a set, by the names that plugins give them.
+fn lobe_names(lobes: Lobe) -> Vec<&'static str> {
+    let all = [
+        (Lobe::DIFFUSE_REFLECTION, "diffuse_reflection"),
+        (Lobe::GLOSSY_REFLECTION, "glossy_reflection"),
+        (Lobe::DELTA_REFLECTION, "delta_reflection"),
+        (Lobe::DIFFUSE_TRANSMISSION, "diffuse_transmission"),
+        (Lobe::GLOSSY_TRANSMISSION, "glossy_transmission"),
+        (Lobe::DELTA_TRANSMISSION, "delta_transmission"),
+    ];
+    all.into_iter().filter(|(lobe, _)| lobes.intersects(*lobe)).map(|(_, name)| name).collect()
+}
+
+fn lights(scene: &Scene) -> Vec<Lights> {
+    let mut kinds =
+        ["area", "point", "spot", "directional", "constant", "envmap"].map(|kind| Lights { kind, count: 0, power: 0.0, share: 0.0 });
+    for light in scene.all_lights().sources() {
+        let kind = match light {
+            LightSource::Area(_) => 0,
+            LightSource::Point(_) => 1,
+            LightSource::Spot(_) => 2,
+            LightSource::Directional(_) => 3,
+            LightSource::Constant(_) => 4,
+            LightSource::Envmap(_) => 5,
+        };
+        kinds[kind].count += 1;
+        kinds[kind].power += f64::from(light.power());
+    }
+    let total: f64 = kinds.iter().map(|kind| kind.power).sum();
+    let with_share = |kind: Lights| Lights { share: kind.power / total, ..kind };
+    kinds.into_iter().filter(|kind| kind.count > 0).map(with_share).collect()
+}
