@@ -110,6 +110,7 @@ mod tests {
     use bidir_kernel::Strategy;
 
     use super::*;
+    use crate::render::Numbers;
     use crate::{film::Film, image::Image, load::load_str};
 
     /// A small room: a lamp, a mirror, something rough, and a lens.
@@ -137,7 +138,7 @@ mod tests {
     }
 
     fn job(strategy: Strategy) -> Job {
-        Job { strategy, seed: 3, threads: 2, target: Target::Samples(8), width: 20 }
+        Job { strategy, seed: 3, numbers: Numbers::Sobol, threads: 2, target: Target::Samples(8), width: 20 }
     }
 
     fn pyramid(description: &Description, scene: &Scene, job: &Job) -> Pyramid {

@@ -10,9 +10,10 @@ use crate::{
     scene::{
         Scene,
         camera::SceneCamera,
+        choice::Lights,
         description::{self, Description, EmitterKind, Geometry, MaterialId},
         extent::{Ball, Ellipse, Flat, LightExtent, Parallelogram, Surface, Tube},
-        lights::{EnvironmentTables, LightSource, Lights, environment_frame},
+        lights::{EnvironmentTables, LightSource, environment_frame},
         shape::{Form, MeshForm, Shape},
         surface::Finish,
     },

@@ -2,6 +2,7 @@
 
 mod build;
 pub mod camera;
+pub mod choice;
 pub mod description;
 pub mod extent;
 pub mod lights;
@@ -12,7 +13,7 @@ pub mod view;
 
 use crate::rays::{BuildStats, Bvh};
 use camera::SceneCamera;
-use lights::Lights;
+use choice::Lights;
 use shape::Shape;
 use surface::Finish;
 

@@ -75,7 +75,7 @@ impl Surface<'_> {
             _ if wo.z >= 0.0 => (front, 1.0),
             Behind::Itself => (front, 1.0),
             Behind::Mirrored => (front, -1.0),
-            Behind::Other(recipe) => (recipe, -1.0),
+            Behind::Other(recipe) => (&**recipe, -1.0),
         };
         match &recipe.fixed {
             Some(shader) => question(shader, turn),
@@ -128,7 +128,7 @@ enum Behind {
     /// The same shader, as if its normal pointed there (`twosided` with one child).
     Mirrored,
     /// Another shader, as if its normal pointed there.
-    Other(Recipe),
+    Other(Box<Recipe>),
 }
 
 #[derive(Clone, Debug)]
@@ -148,7 +148,7 @@ impl Finish {
                 Self { front: Recipe::new(material(*front)?)?, behind: Behind::Mirrored }
             }
             Material::TwoSided { front, back } => {
-                Self { front: Recipe::new(material(*front)?)?, behind: Behind::Other(Recipe::new(material(*back)?)?) }
+                Self { front: Recipe::new(material(*front)?)?, behind: Behind::Other(Box::new(Recipe::new(material(*back)?)?)) }
             }
             one => Self { front: Recipe::new(one)?, behind: Behind::Itself },
         })

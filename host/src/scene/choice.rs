@@ -1,0 +1,176 @@
+//! The choice among lights: for a light walk by power; for a receiver by what reaches it, or, among many lights, by power.
+
+use bidir_kernel::{Chance, Point, Real, Vec3, math, point::Place, real::PI};
+
+use crate::scene::{
+    extent::{Ellipse, LightExtent, Parallelogram},
+    lights::{LightId, LightSource, SceneLight},
+};
+
+/// Up to this many lights, next event looks at each one from where it stands.
+const MOST_LOOKED_AT: usize = 16;
+
+/// The lights and the choice among them: for a light walk by power; for a receiver by what reaches it, or, among many lights, by power.
+#[derive(Clone, Debug, Default)]
+pub struct Lights {
+    sources: Vec<LightSource>,
+    /// Each one's share of the power.
+    shares: Vec<Real>,
+    /// Those shares, added up.
+    cumulative: Vec<Real>,
+    environment: Option<LightId>,
+}
+
+impl Lights {
+    /// Those of `sources` that shine at all; the others are dropped. The second value maps an index in `sources` to its light.
+    pub fn new(sources: Vec<LightSource>) -> (Self, Vec<Option<LightId>>) {
+        let powers: Vec<f64> = sources.iter().map(|source| f64::from(source.power())).collect();
+        let total: f64 = powers.iter().sum();
+        let mut lights = Self::default();
+        let mut ids = Vec::with_capacity(sources.len());
+        let count = sources.len() as f64;
+        let mut sum = 0.0;
+        for (source, power) in sources.into_iter().zip(powers) {
+            let shines = power > 0.0 && power.is_finite() && total.is_finite();
+            ids.push(shines.then_some(LightId(lights.sources.len() as u32)));
+            if !shines {
+                continue;
+            }
+            if matches!(source, LightSource::Constant(_) | LightSource::Envmap(_)) {
+                lights.environment = Some(LightId(lights.sources.len() as u32));
+            }
+            let before = sum as Real;
+            // A little for every light, so that one 12 decades weaker is still found.
+            sum += 0.99 * power / total + 0.01 / count;
+            lights.sources.push(source);
+            // The share is what the cumulative table gives, so that what is picked and what is asked agree to the bit.
+            lights.shares.push(sum as Real - before);
+            lights.cumulative.push(sum as Real);
+        }
+        (lights, ids)
+    }
+
+    /// All of them.
+    pub fn sources(&self) -> &[LightSource] {
+        &self.sources
+    }
+
+    /// The one that escaping rays land on.
+    #[inline]
+    pub fn environment(&self) -> Option<LightId> {
+        self.environment
+    }
+
+    /// The light `id`.
+    #[inline]
+    pub fn get(&self, id: LightId) -> SceneLight<'_> {
+        self.sources[id.0 as usize].asked()
+    }
+
+    /// Chooses a light for `lit`, or, without one, to start a light walk from.
+    #[inline]
+    pub fn pick(&self, lit: Option<&Point>, u: Real) -> Option<(LightId, Chance)> {
+        match lit {
+            Some(lit) if self.looks(lit) => self.pick_reaching(lit, u),
+            _ => {
+                let index = self.cumulative.partition_point(|&sum| sum <= u).min(self.sources.len().checked_sub(1)?);
+                Some((LightId(index as u32), Chance(self.shares[index])))
+            }
+        }
+    }
+
+    /// The chance that [`Lights::pick`] chooses `id`.
+    #[inline]
+    pub fn chance(&self, id: LightId, lit: Option<&Point>) -> Chance {
+        match lit {
+            Some(lit) if self.looks(lit) => {
+                if self.sources.len() == 1 {
+                    return Chance(1.0);
+                }
+                let total: Real = self.sources.iter().map(|source| source.reaching(lit)).sum();
+                Chance(if total > 0.0 { self.sources[id.0 as usize].reaching(lit) / total } else { 0.0 })
+            }
+            _ => Chance(self.shares[id.0 as usize]),
+        }
+    }
+
+    fn looks(&self, lit: &Point) -> bool {
+        self.sources.len() <= MOST_LOOKED_AT && lit.place != Place::Distant
+    }
+
+    fn pick_reaching(&self, lit: &Point, u: Real) -> Option<(LightId, Chance)> {
+        if self.sources.len() == 1 {
+            return Some((LightId(0), Chance(1.0)));
+        }
+        let mut reaching = [0.0; MOST_LOOKED_AT];
+        let mut total = 0.0;
+        for (slot, source) in reaching.iter_mut().zip(&self.sources) {
+            *slot = source.reaching(lit);
+            total += *slot;
+        }
+        let mut rest = u * total;
+        let mut last = None;
+        for (index, &reaching) in reaching[..self.sources.len()].iter().enumerate() {
+            if reaching > 0.0 {
+                last = Some((LightId(index as u32), Chance(reaching / total)));
+                if rest < reaching {
+                    return last;
+                }
+                rest -= reaching;
+            }
+        }
+        last
+    }
+}
+
+impl LightSource {
+    /// About how much reaches `lit`, W/m², mean of the bands; 0 only where nothing does. What next event chooses by.
+    fn reaching(&self, lit: &Point) -> Real {
+        match self {
+            Self::Area(light) => light.profile.radiance.mean() * solid_angle(&light.extent, lit),
+            Self::Point(light) => light.profile.intensity.mean() / distance_squared(light.position, lit),
+            Self::Spot(light) => {
+                let toward = light.frame.to_local(lit.position - light.position);
+                let angle = math::atan2(math::sqrt(toward.x * toward.x + toward.y * toward.y), toward.z);
+                // A receiver on the rim of the cone may round to outside.
+                if angle > light.profile.cutoff * (1.0 + 1e-4) {
+                    0.0
+                } else {
+                    light.profile.intensity.mean() / distance_squared(light.position, lit)
+                }
+            }
+            Self::Directional(light) => light.irradiance.mean(),
+            Self::Constant(light) => PI * light.profile.radiance.mean(),
+            Self::Envmap(light) => 0.5 * light.profile.total(),
+        }
+    }
+}
+
+fn distance_squared(position: Vec3, lit: &Point) -> Real {
+    let d = position - lit.position;
+    math::dot(d, d).max(Real::MIN_POSITIVE)
+}
+
+/// About the solid angle under which `lit` sees a light's front; 0 only behind a flat one.
+fn solid_angle(extent: &LightExtent, lit: &Point) -> Real {
+    let flat = |center: Vec3, normal: Vec3, area: Real| {
+        let d = lit.position - center;
+        let height = math::dot(d, normal);
+        if height <= 0.0 {
+            return 0.0;
+        }
+        let squared = math::dot(d, d);
+        // Near by, a flat light fills at most the hemisphere, and its edges stand higher than its middle.
+        let cos = (height / math::sqrt(squared)).max(0.05);
+        2.0 * PI * (area * cos) / (area * cos + 2.0 * PI * squared)
+    };
+    let round = |center: Vec3, area: Real| 4.0 * PI * area / (area + 16.0 * PI * distance_squared(center, lit));
+    match extent {
+        LightExtent::Parallelogram(Parallelogram(shape)) | LightExtent::Ellipse(Ellipse(shape)) => {
+            flat(shape.center, shape.frame.z, shape.area)
+        }
+        LightExtent::Ball(ball) => round(ball.center, extent.area()),
+        LightExtent::Tube(tube) => round(tube.base + tube.axis * 0.5, extent.area()),
+        LightExtent::Surface(surface) => round(surface.center, extent.area()),
+    }
+}
