@@ -47,12 +47,12 @@ impl Path {
     }
 
     /// L_i.
-    fn from_light(&self, i: usize) -> f64 {
+    fn made_by_light(&self, i: usize) -> f64 {
         if i == 0 { self.light_end } else { self.to_lens[i - 1] * self.forward[i - 1] }
     }
 
     /// E_i.
-    fn from_camera(&self, i: usize) -> f64 {
+    fn made_by_camera(&self, i: usize) -> f64 {
         if i == self.k() { self.lens_end } else { self.to_light[i + 1] * self.backward[i] }
     }
 
@@ -80,11 +80,11 @@ impl Path {
         let mut sum = libm::log(effort);
         for i in 0..=self.k() {
             let density = if i >= s {
-                self.from_camera(i)
+                self.made_by_camera(i)
             } else if i == 0 && technique.join() == Join::NextEvent {
                 self.next_event_end
             } else {
-                self.from_light(i)
+                self.made_by_light(i)
             };
             sum += libm::log(density);
         }
@@ -152,8 +152,8 @@ impl Path {
         }
         let join = self.technique(s).join();
         let own = heuristic.of(techniques.effort(join));
-        let light = |s: usize| self.light_side(s, techniques, heuristic).sum(heuristic, self.from_camera(s - 1), self.to_light[s - 1]);
-        let camera = |s: usize| self.camera_side(k + 1 - s, techniques, heuristic).sum(heuristic, self.from_light(s), self.to_lens[s]);
+        let light = |s: usize| self.light_side(s, techniques, heuristic).sum(heuristic, self.made_by_camera(s - 1), self.to_light[s - 1]);
+        let camera = |s: usize| self.camera_side(k + 1 - s, techniques, heuristic).sum(heuristic, self.made_by_light(s), self.to_lens[s]);
         match join {
             Join::LightHit => {
                 let side = self.camera_side(k + 1, techniques, heuristic);
@@ -167,12 +167,12 @@ impl Path {
                 share(own, side.per_forward() * (instead + closed))
             }
             Join::NextEvent => {
-                let hit = if self.delta[0] { 0.0 } else { heuristic.of(techniques.light_hit * self.from_camera(0)) };
+                let hit = if self.delta[0] { 0.0 } else { heuristic.of(techniques.light_hit * self.made_by_camera(0)) };
                 share(heuristic.of(techniques.next_event * self.next_event_end), hit + heuristic.of(self.light_end) * camera(1))
             }
             Join::LensHit => share(own, light(k + 1)),
             Join::LensSplat => {
-                let hit = if self.delta[k] { 0.0 } else { heuristic.of(techniques.lens_hit * self.from_light(k) / self.lens_end) };
+                let hit = if self.delta[k] { 0.0 } else { heuristic.of(techniques.lens_hit * self.made_by_light(k) / self.lens_end) };
                 share(own, light(k) + hit)
             }
             Join::Connection => share(own, light(s) + camera(s)),

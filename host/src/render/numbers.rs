@@ -146,15 +146,26 @@ mod tests {
     }
 
     #[test]
-    fn walks_halves_and_pixels_do_not_know_of_each_other() {
-        let correlation = |a: &[f32], b: &[f32]| a.iter().zip(b).map(|(a, b)| 12.0 * (a - 0.5) * (b - 0.5)).sum::<f32>() / a.len() as f32;
-        // σ of the mean of n products of independent uniform numbers, each scaled to variance 1, is 1/√n; stratified ones vary less.
-        let n = 4096;
-        let camera = numbers(Walk::Camera, 4, n);
-        let light = numbers(Walk::Light, 4, n);
-        assert!(correlation(&camera, &light).abs() < 4.0 / (n as f32).sqrt());
-        let (even, odd): (Vec<_>, Vec<_>) = camera.chunks(2).map(|pair| (pair[0], pair[1])).unzip();
-        assert!(correlation(&even, &odd).abs() < 4.0 / (even.len() as f32).sqrt());
+    fn walks_and_halves_do_not_know_of_each_other() {
+        let number = |pixel, index, walk| {
+            let source = Sobol::new(1, index);
+            let mut sobol = source.pixel(pixel);
+            sobol.seek(walk, 4);
+            sobol.next() - 0.5
+        };
+        // Over scrambles, a product of two independent numbers, each scaled to variance 1, has mean 0 and variance 1.
+        let pixels = 16_384;
+        let correlation = |a: (u32, Walk), b: (u32, Walk)| {
+            let product = |pixel| 12.0 * number(pixel, a.0, a.1) * number(pixel, b.0, b.1);
+            (0..pixels).map(product).sum::<f32>() / pixels as f32
+        };
+        // Four standard deviations: by chance once in 16,000.
+        let threshold = 4.0 / (pixels as f32).sqrt();
+        let (camera, light) = (Walk::Camera, Walk::Light);
+        for (a, b) in [((6, camera), (6, light)), ((6, camera), (7, camera)), ((6, light), (7, light)), ((6, camera), (7, light))] {
+            let correlation = correlation(a, b);
+            assert!(correlation.abs() < threshold, "{a:?} and {b:?}: {correlation}, threshold {threshold}");
+        }
     }
 
     #[test]
