@@ -7,7 +7,7 @@ use crate::{
     film::{Contribution, Film},
     light::{Emission, Light},
     math::dot,
-    point::{Point, Ray, Segment},
+    point::{Place, Point, Ray, Segment},
     real::{Real, Vec3},
     roulette::survive,
     sampler::{DIMENSIONS_PER_VERTEX, Sampler, Walk},
@@ -128,7 +128,9 @@ impl<'s, S: Scene, P: Sampler, F: Film> LightWalk<'_, 's, S, P, F> {
         self.sampler.seek(Walk::Light, 5);
         let lens = self.sampler.next_pair();
         let Some(seen) = self.scene.camera().see(point, lens) else { return };
-        let exit = light.emitted(point, -seen.direction);
+        // Light from infinitely far away is told by the line along which it arrives.
+        let at = if point.place == Place::Distant { Point::distant(seen.point.position, point.normal) } else { *point };
+        let exit = light.emitted(&at, -seen.direction);
         if exit.radiance.is_black() || !self.lens_sees(&seen, point) {
             return;
         }
@@ -185,11 +187,8 @@ impl<'s, S: Scene, P: Sampler, F: Film> LightWalk<'_, 's, S, P, F> {
 
     /// Whether the lens sees `point` along this ray: within its clipping distances, and nothing in between.
     fn lens_sees(&self, seen: &Seen, point: &Point) -> bool {
-        let distance = if point.place == crate::point::Place::Distant {
-            Real::INFINITY
-        } else {
-            dot(point.position - seen.point.position, seen.direction)
-        };
+        let distance =
+            if point.place == Place::Distant { Real::INFINITY } else { dot(point.position - seen.point.position, seen.direction) };
         if distance <= seen.near || distance > seen.far {
             return false;
         }
