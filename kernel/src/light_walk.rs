@@ -65,8 +65,9 @@ impl<'s, S: Scene, P: Sampler, F: Film> LightWalk<'_, 's, S, P, F> {
         if weight.is_black() || !weight.is_finite() || end <= 0.0 || spread <= 0.0 {
             return 0;
         }
-        let seen_directly = exit.end.can_be_hit() && !scene.hides_emitters();
-        if seen_directly && techniques.uses(Join::LensSplat) && self.joined_length >= 1 {
+        // Whether the lens may see the walk's newest vertex.
+        let mut seen = exit.end.can_be_hit() && !scene.hides_emitters();
+        if seen && techniques.uses(Join::LensSplat) && self.joined_length >= 1 {
             self.splat_light(&light, &previous, chance.0);
         }
 
@@ -77,7 +78,7 @@ impl<'s, S: Scene, P: Sampler, F: Film> LightWalk<'_, 's, S, P, F> {
         let mut stored = 0;
         let mut length = 1;
         loop {
-            if techniques.uses(Join::LensHit) && (length > 1 || seen_directly) {
+            if techniques.uses(Join::LensHit) && seen {
                 self.lens_hit(&previous, direction, length, &side, throughput, (pdf, pdf_rev, delta));
             }
             // A vertex here makes paths of at least one segment more.
@@ -96,9 +97,9 @@ impl<'s, S: Scene, P: Sampler, F: Film> LightWalk<'_, 's, S, P, F> {
             self.sampler.seek(Walk::Light, length * DIMENSIONS_PER_VERTEX);
             let lens = self.sampler.next_pair();
             let bounce = vertex.bounce([self.sampler.next(), self.sampler.next(), self.sampler.next()]);
+            seen = !(scene.hides_emitters() && scene.light_id_at(hit).is_some());
             if vertex.joins() {
-                let hidden = scene.hides_emitters() && scene.light_id_at(hit).is_some();
-                if techniques.uses(Join::LensSplat) && !hidden {
+                if techniques.uses(Join::LensSplat) && seen {
                     self.splat(&vertex, length, &side, throughput, lens);
                 }
                 if techniques.uses(Join::Connection)
