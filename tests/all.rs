@@ -1,0 +1,11 @@
+//! Tests that need more than one crate.
+//!
+//! Statistical tests fix their seeds, and print statistic, threshold and samples. A failing picture is left in the folder that the
+//! message names.
+#![cfg(test)]
+
+mod agreement;
+mod pictures;
+mod scenes;
+mod statistics;
+mod techniques;
