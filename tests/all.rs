@@ -5,6 +5,9 @@
 #![cfg(test)]
 
 mod agreement;
+mod depth;
+mod furnace;
+mod invariance;
 mod pictures;
 mod scenes;
 mod statistics;

@@ -71,6 +71,22 @@ fn normal_quantile(chance: f64) -> f64 {
     high
 }
 
+/// One of `comparisons` with what is known: `found` must be `wanted` as far as chance explains, and within the share `within` of it.
+pub fn assert_is(what: &str, found: &Estimate, wanted: f64, comparisons: usize, within: f64) {
+    let apart = found.minus(&Estimate::exactly(wanted));
+    let (deviation, limit) = (apart.deviation(wanted), threshold(comparisons, apart.degrees));
+    let (share, doubt) = (apart.mean / wanted, apart.error / wanted.abs());
+    let what = format!(
+        "{what}: {:.6} for {wanted:.6}, {:+.3} % ± {:.3} %, {deviation:.2} σ of {limit:.2}",
+        found.mean,
+        100.0 * share,
+        100.0 * doubt
+    );
+    println!("{what}");
+    assert!(doubt < 0.5 * within, "too little to tell: {what}");
+    assert!(deviation < limit && share.abs() < within, "{what}");
+}
+
 #[test]
 fn thresholds_are_students_quantiles() {
     // From tables: t(1 − α/2, ν).
