@@ -9,6 +9,7 @@ mod depth;
 mod furnace;
 mod invariance;
 mod pictures;
+mod references;
 mod scenes;
 mod statistics;
 mod techniques;
