@@ -7,6 +7,7 @@
 mod agreement;
 mod depth;
 mod furnace;
+mod house;
 mod invariance;
 mod pictures;
 mod references;
