@@ -63,6 +63,7 @@ pub trait Light {
     fn illuminate(&self, lit: &Point, u: [Real; 2]) -> Option<Illumination>;
 
     /// A ray landed on the light at `at`: what leaves there along the unit direction `toward`.
+    /// For a distant light, `at` lies on the line along which the light arrives.
     fn emitted(&self, at: &Point, toward: Vec3) -> Exit;
 
     /// How densely [`Light::illuminate`] makes `at` for the receiver `lit`, in the measure of [`Exit::end`].

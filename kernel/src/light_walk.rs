@@ -7,7 +7,7 @@ use crate::{
     film::{Contribution, Film},
     light::{Emission, Light},
     math::dot,
-    point::{Point, Ray, Segment},
+    point::{Place, Point, Ray, Segment},
     real::{Real, Vec3},
     roulette::survive,
     sampler::{DIMENSIONS_PER_VERTEX, Sampler, Walk, start, vertex},
@@ -67,8 +67,9 @@ impl<'s, S: Scene, P: Sampler, F: Film> LightWalk<'_, 's, S, P, F> {
         if weight.is_black() || !weight.is_finite() || end <= 0.0 || spread <= 0.0 {
             return 0;
         }
-        let seen_directly = exit.end.can_be_hit() && !scene.hides_emitters();
-        if seen_directly && techniques.uses(Join::LensSplat) && self.joined_length >= 1 {
+        // Whether the lens may see the walk's newest vertex.
+        let mut seen = exit.end.can_be_hit() && !scene.hides_emitters();
+        if seen && techniques.uses(Join::LensSplat) && self.joined_length >= 1 {
             self.splat_light(&light, &previous, chance.0);
         }
 
@@ -79,7 +80,7 @@ impl<'s, S: Scene, P: Sampler, F: Film> LightWalk<'_, 's, S, P, F> {
         let mut stored = 0;
         let mut length = 1;
         loop {
-            if techniques.uses(Join::LensHit) && (length > 1 || seen_directly) {
+            if techniques.uses(Join::LensHit) && seen {
                 self.lens_hit(&previous, direction, length, &side, throughput, (pdf, pdf_rev, delta));
             }
             // A vertex here makes paths of at least one segment more.
@@ -98,9 +99,9 @@ impl<'s, S: Scene, P: Sampler, F: Film> LightWalk<'_, 's, S, P, F> {
             let dimension = length.wrapping_mul(DIMENSIONS_PER_VERTEX);
             self.sampler.seek(Walk::Light, dimension + vertex::BSDF);
             let bounce = here.bounce([self.sampler.next(), self.sampler.next(), self.sampler.next()]);
+            seen = !(scene.hides_emitters() && scene.light_id_at(hit).is_some());
             if here.joins() {
-                let hidden = scene.hides_emitters() && scene.light_id_at(hit).is_some();
-                if techniques.uses(Join::LensSplat) && !hidden {
+                if techniques.uses(Join::LensSplat) && seen {
                     self.sampler.seek(Walk::Light, dimension + vertex::ENDPOINT);
                     let lens = self.sampler.next_pair();
                     self.splat(&here, length, &side, throughput, lens);
@@ -133,7 +134,9 @@ impl<'s, S: Scene, P: Sampler, F: Film> LightWalk<'_, 's, S, P, F> {
         self.sampler.seek(Walk::Light, start::SPLAT);
         let lens = self.sampler.next_pair();
         let Some(seen) = self.scene.camera().see(point, lens) else { return };
-        let exit = light.emitted(point, -seen.direction);
+        // Light from infinitely far away is told by the line along which it arrives.
+        let at = if point.place == Place::Distant { Point::distant(seen.point.position, point.normal) } else { *point };
+        let exit = light.emitted(&at, -seen.direction);
         if exit.radiance.is_black() || !self.lens_sees(&seen, point) {
             return;
         }
@@ -192,11 +195,8 @@ impl<'s, S: Scene, P: Sampler, F: Film> LightWalk<'_, 's, S, P, F> {
 
     /// Whether the lens sees `point` along this ray: within its clipping distances, and nothing in between.
     fn lens_sees(&self, seen: &Seen, point: &Point) -> bool {
-        let distance = if point.place == crate::point::Place::Distant {
-            Real::INFINITY
-        } else {
-            dot(point.position - seen.point.position, seen.direction)
-        };
+        let distance =
+            if point.place == Place::Distant { Real::INFINITY } else { dot(point.position - seen.point.position, seen.direction) };
         if distance <= seen.near || distance > seen.far {
             return false;
         }

@@ -197,7 +197,11 @@ impl Ball {
     }
 
     /// 1 − cos of the cone in which `lit` sees the ball, and the squared sine; `None` from inside.
+    /// A ball that faces inwards is seen from inside only, from its own surface too, wherever that rounds to.
     fn cone(&self, lit: &Point) -> Option<(Real, Real)> {
+        if self.outward < 0.0 {
+            return None;
+        }
         let to_center = self.center - lit.position;
         let squared = math::dot(to_center, to_center);
         let sin_squared = self.radius * self.radius / squared;

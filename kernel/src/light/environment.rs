@@ -4,6 +4,7 @@ use crate::{
     density::{EndDensity, PerArea, PerSolidAngle, Spread},
     frame::Frame,
     light::{Emission, Exit, Illumination, Light},
+    math::dot,
     point::Point,
     profile::Profile,
     real::{PI, Real, Vec2, Vec3},
@@ -61,7 +62,11 @@ impl<P: Profile> Light for EnvironmentLight<P> {
 
     fn emitted(&self, at: &Point, _: Vec3) -> Exit {
         let out = self.profile.eval(Vec2::ZERO, self.frame.to_local(at.normal));
-        Exit { radiance: out.radiance, end: EndDensity::Direction(out.pdf), spread: self.spread() }
+        // A lens may stand outside the sphere, and see past it along a line that no light walk takes.
+        let across = (at.position - self.center).cross(at.normal);
+        let walked = dot(across, across) <= self.radius * self.radius;
+        let spread = if walked { self.spread() } else { Spread::Parallel(PerArea(0.0)) };
+        Exit { radiance: out.radiance, end: EndDensity::Direction(out.pdf), spread }
     }
 
     fn next_event_density(&self, at: &Point, _: &Point) -> EndDensity {

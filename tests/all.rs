@@ -1,0 +1,16 @@
+//! Tests that need more than one crate.
+//!
+//! Statistical tests fix their seeds, and print statistic, threshold and samples. A failing picture is left in the folder that the
+//! message names.
+#![cfg(test)]
+
+mod agreement;
+mod depth;
+mod furnace;
+mod house;
+mod invariance;
+mod pictures;
+mod references;
+mod scenes;
+mod statistics;
+mod techniques;
