@@ -39,7 +39,7 @@ fn depth_1_shows_emitters_only() {
         read(&[depth(1), pinhole(), room(), panel_of("rectangle"), shape("sphere", r#"<scale value="0.5"/>"#, &area(2.0))].concat());
     let path = subject.image(&subject.job(subject.strategy(PATH, Heuristic::Balance), 64, 1));
     assert!(path.pixels.iter().all(|p| p[0] <= 12.0 && (p[0] == 0.0 || (p[1] / p[0] - 0.9).abs() < 1e-5)));
-    assert!(mean_of(&path) > 0.0 && path.pixels.iter().any(|&p| p == [0.0; 3]));
+    assert!(mean_of(&path) > 0.0 && path.pixels.contains(&[0.0; 3]));
 }
 
 /// Σ 0.1 · 0.9^(k−1) up to k = 20, and without end: most of the light comes by long paths.

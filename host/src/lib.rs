@@ -5,6 +5,8 @@
 
 pub mod error;
 
+pub mod partial;
+
 pub mod image;
 
 pub mod rays;

@@ -63,7 +63,7 @@ fn an_integrating_sphere_adds_up_rho_by_1_minus_rho() {
     }
     let endless = read(&scene.replace(&depth(LONGEST as i32), &depth(-1)));
     for Estimator { name: estimator, techniques, heuristic, effort, within } in ESTIMATORS {
-        let found = endless.pictures(endless.strategy(techniques, heuristic), 1536 * effort, 2);
+        let found = endless.pictures(endless.strategy(techniques, heuristic), 2560 * effort, 2);
         let mean = found.mean(found.whole(), &[0, 1, 2]);
         assert_is(&format!("bulb, {estimator}, all lengths"), &mean, first / (1.0 - again), 5 * ESTIMATORS.len(), within);
     }

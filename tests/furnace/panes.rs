@@ -60,7 +60,7 @@ fn one_two_and_three_blocks_dim_what_is_behind_as_fresnel_says() {
         for (kind, glass) in [("blocks", blocks(count)), ("panes", panes(count))] {
             let subject = read(&through(&glass));
             for (estimator, techniques) in [("path", PATH), ("bdpt", BDPT)] {
-                let found = subject.pictures(subject.strategy(techniques, Heuristic::Balance), 1536, 1);
+                let found = subject.pictures(subject.strategy(techniques, Heuristic::Balance), 3072, 1);
                 let wanted = 2.0 * passed(0.8, 2 * count);
                 assert_is(&format!("{count} {kind}, {estimator}"), &found.mean(found.whole(), &[0, 1, 2]), wanted, 12, WITHIN);
             }

@@ -11,7 +11,7 @@ use crate::{
         arguments::{Render, SceneArguments},
         interrupt,
         progress::{Goal, Progress, Verbosity},
-        stats::{CpuSeconds, Geometry, Seconds, Stats},
+        stats::{self, CpuSeconds, Geometry, Seconds, Stats},
     },
     error::Result,
     film::{Film, Noise},
@@ -48,7 +48,11 @@ pub(super) fn thread_count(asked: Option<u32>) -> usize {
 
 fn default_output(scene: Option<&Path>) -> PathBuf {
     match scene.and_then(Path::file_stem) {
-        Some(stem) => PathBuf::from(stem).with_extension("exr"),
+        Some(stem) => {
+            let mut name = stem.to_owned();
+            name.push(".exr");
+            name.into()
+        }
         None => PathBuf::from("welcome.png"),
     }
 }
@@ -58,6 +62,9 @@ pub(super) fn run(arguments: &Render) -> Result<Outcome> {
     let mut seconds = Seconds::default();
     let output = arguments.output.clone().unwrap_or_else(|| default_output(arguments.scene.as_deref()));
     write::check_writable(&output)?;
+    if let Some(path) = &arguments.stats {
+        stats::check_writable(path)?;
+    }
     let plan = match &arguments.plan {
         Some(path) => Plan::read(path)?,
         None => arguments.integrator.plan(),
@@ -97,7 +104,7 @@ pub(super) fn run(arguments: &Render) -> Result<Outcome> {
     }
     seconds.total = start.elapsed().as_secs_f64();
     if let Some(path) = &arguments.stats {
-        stats(arguments, &description, &scene, &plan, &job, &status, seconds, film.refused(), film.noise(light_walks)).write(path)?;
+        statistics(arguments, &description, &scene, &plan, &job, &status, seconds, film.refused(), film.noise(light_walks)).write(path)?;
     }
     if !arguments.quiet {
         let Status { samples, elapsed, .. } = status;
@@ -135,7 +142,7 @@ fn save(output: &Path, film: &Film, light_walks: f64, status: &Status, seed: u64
 }
 
 #[expect(clippy::too_many_arguments, reason = "the statistics are about everything there is")]
-fn stats(
+fn statistics(
     arguments: &Render,
     description: &Description,
     scene: &Scene,

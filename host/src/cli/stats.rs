@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use crate::{
     error::{Error, Result},
+    partial::Partial,
     plan::Plan,
     render::Numbers,
     scene::view::RayCounts,
@@ -87,13 +88,20 @@ pub struct Geometry {
     pub bytes: usize,
 }
 
+/// What is being written, for messages.
+const WHAT: &str = "statistics";
+
+/// Whether statistics could be written there. To be asked before a render starts.
+pub fn check_writable(path: &Path) -> Result<()> {
+    Partial::create(path, WHAT).map(drop)
+}
+
 impl Stats {
     /// Writes them; the file is whole or not there.
     pub fn write(&self, path: &Path) -> Result<()> {
-        let failed = |error: &dyn std::fmt::Display| {
-            Error::in_file(path, format!("the statistics cannot be written: {error}"), "name a file in a folder that takes one")
-        };
-        let text = serde_json::to_string_pretty(self).map_err(|error| failed(&error))?;
-        std::fs::write(path, text + "\n").map_err(|error| failed(&error))
+        let text = serde_json::to_string_pretty(self).map_err(|error| {
+            Error::in_file(path, format!("the statistics cannot be spelled as JSON: {error}"), "this is a bug; please report it")
+        })?;
+        Partial::write_text(path, WHAT, &(text + "\n"))
     }
 }

@@ -1,11 +1,8 @@
 //! Writes pictures. A file is either whole or not there.
 
 use std::{
-    ffi::OsString,
-    fs::{self, File, OpenOptions},
-    io::{self, BufWriter, Seek, Write},
-    path::{Path, PathBuf},
-    process,
+    io::{BufWriter, Seek, Write},
+    path::Path,
 };
 
 use bidir_kernel::math;
@@ -13,7 +10,13 @@ use exr::prelude as ex;
 use image::{ExtendedColorType, ImageEncoder, Rgb, codecs};
 
 use super::Image;
-use crate::error::{Error, Result};
+use crate::{
+    error::{Error, Result},
+    partial::Partial,
+};
+
+/// What is being written, for messages.
+const WHAT: &str = "image";
 
 /// What goes into a file.
 #[derive(Clone, Debug)]
@@ -44,7 +47,7 @@ enum Format {
 /// To be asked before a render starts.
 pub fn check_writable(path: &Path) -> Result<()> {
     format_of(path)?;
-    Partial::create(path).map(drop)
+    Partial::create(path, WHAT).map(drop)
 }
 
 /// Writes by extension: `.exr` linear in float32; `.hdr` linear in RGBE; `.png` in 8-bit sRGB, clamped to 0 … 1 and not dithered.
@@ -52,8 +55,8 @@ pub fn check_writable(path: &Path) -> Result<()> {
 pub fn write(path: &Path, layers: &Layers) -> Result<()> {
     let format = format_of(path)?;
     check_layers(path, format, layers)?;
-    let mut partial = Partial::create(path)?;
-    let mut out = BufWriter::new(&mut partial.file);
+    let mut partial = Partial::create(path, WHAT)?;
+    let mut out = BufWriter::new(partial.file());
     match format {
         Format::Exr => write_exr(&mut out, layers),
         Format::Hdr => write_hdr(&mut out, layers.image),
@@ -62,7 +65,7 @@ pub fn write(path: &Path, layers: &Layers) -> Result<()> {
     .and_then(|()| out.flush().map_err(|e| e.to_string()))
     .map_err(|cause| Error::in_file(path, format!("the image cannot be written: {cause}"), "free some space, or choose another place"))?;
     drop(out);
-    partial.finish(path)
+    partial.finish()
 }
 
 fn format_of(path: &Path) -> Result<Format> {
@@ -90,53 +93,6 @@ fn check_layers(path: &Path, format: Format, layers: &Layers) -> Result<()> {
         return Err(Error::in_file(path, thing, "this is a bug; please report it"));
     }
     Ok(())
-}
-
-/// A file beside the one to be written, which vanishes unless it is finished.
-struct Partial {
-    file: File,
-    path: PathBuf,
-}
-
-impl Partial {
-    fn create(path: &Path) -> Result<Self> {
-        let refuse = |cause: &dyn std::fmt::Display| {
-            Error::in_file(
-                path,
-                format!("the image cannot be written: {cause}"),
-                "name a file in a folder that exists and can be written to",
-            )
-        };
-        let name = path.file_name().ok_or_else(|| refuse(&"it has no name"))?;
-        if path.is_dir() {
-            return Err(refuse(&"it is a folder"));
-        }
-        // Another process, or a thread of this one, may be writing the same image.
-        for attempt in 0..100 {
-            let mut hidden = OsString::from(".");
-            hidden.push(name);
-            hidden.push(format!(".{}-{attempt}.partial", process::id()));
-            let partial = path.with_file_name(hidden);
-            match OpenOptions::new().write(true).create_new(true).open(&partial) {
-                Ok(file) => return Ok(Self { file, path: partial }),
-                Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
-                Err(error) => return Err(refuse(&error)),
-            }
-        }
-        Err(refuse(&"unfinished files are in its way"))
-    }
-
-    fn finish(self, path: &Path) -> Result<()> {
-        fs::rename(&self.path, path)
-            .map_err(|error| Error::in_file(path, format!("the image cannot be written: {error}"), "choose another place"))
-    }
-}
-
-impl Drop for Partial {
-    fn drop(&mut self) {
-        // After `finish` there is no such file, and nobody can be told of any other failure here.
-        let _ = fs::remove_file(&self.path);
-    }
 }
 
 fn write_exr(out: impl Write + Seek, layers: &Layers) -> std::result::Result<(), String> {

@@ -1,9 +1,6 @@
 //! What `bidir techniques` leaves in its folder.
 
-use std::{
-    fs,
-    path::{Path, PathBuf},
-};
+use std::path::{Path, PathBuf};
 
 use bidir_kernel::Technique;
 use serde::Serialize;
@@ -18,6 +15,7 @@ use crate::{
         Image,
         write::{self, Layers},
     },
+    partial::Partial,
     plan::joins,
 };
 
@@ -157,9 +155,8 @@ fn mean(image: &Image) -> [f64; 3] {
 }
 
 fn write_index(path: &Path, index: &Index) -> Result<()> {
-    let failed = |cause: &dyn std::fmt::Display| {
-        Error::in_file(path, format!("the index cannot be written: {cause}"), "free some space, or choose another folder")
-    };
-    let text = serde_json::to_string_pretty(index).map_err(|error| failed(&error))?;
-    fs::write(path, text + "\n").map_err(|error| failed(&error))
+    let text = serde_json::to_string_pretty(index).map_err(|error| {
+        Error::in_file(path, format!("the index cannot be spelled as JSON: {error}"), "this is a bug; please report it")
+    })?;
+    Partial::write_text(path, "index", &(text + "\n"))
 }

@@ -63,6 +63,25 @@ fn escapes(bvh: &Bvh, centre: Vec3) -> usize {
     escapes
 }
 
+/// Leaves every flat face it hits to either side and counts how often the next hit is the same face.
+fn returns(bvh: &Bvh, centre: Vec3, radius: f32) -> usize {
+    let mut random = Random(4);
+    let mut returns = 0;
+    for i in 0..BOUNCES {
+        let origin = centre + random.direction() * radius * 3.0;
+        let into = ray(origin, centre + random.cube() * radius - origin);
+        let Some(hit) = bvh.closest(&into) else { continue };
+        let at = bvh.surface(&into, &hit);
+        // Half of the directions graze.
+        let out = random.direction();
+        let out = if i % 2 == 0 { out } else { out - at.normal * (out.dot(at.normal) * 0.9999) };
+        let side = out.dot(at.normal).signum();
+        let next = bvh.closest(&ray(at.position + at.normal * (at.offset * side), out));
+        returns += usize::from(next.is_some_and(|next| next.primitive == hit.primitive));
+    }
+    returns
+}
+
 fn one(insert: impl FnOnce(&mut Primitives)) -> Bvh {
     let mut primitives = Primitives::new();
     insert(&mut primitives);
@@ -78,6 +97,7 @@ fn a_closed_mesh_never_hits_itself_from_outside_nor_loses_a_bounce_inside() {
         if centre == Vec3::ZERO {
             assert_eq!(outside_self_hits(&bvh, centre, radius), 0, "radius {radius} at {centre}");
         }
+        assert_eq!(returns(&bvh, centre, radius), 0, "radius {radius} at {centre}");
         assert_eq!(escapes(&bvh, centre), 0, "radius {radius} at {centre}");
     }
 }
