@@ -65,16 +65,20 @@ pub(super) fn run(arguments: &Render) -> Result<Outcome> {
     if let Some(path) = &arguments.stats {
         stats::check_writable(path)?;
     }
+    let planning = Instant::now();
     let plan = match &arguments.plan {
         Some(path) => Plan::read(path)?,
         None => arguments.integrator.plan(),
     };
+    seconds.plan = planning.elapsed().as_secs_f64();
 
+    let loading = Instant::now();
     let description = read(arguments.scene.as_deref(), &arguments.from)?;
-    seconds.load = start.elapsed().as_secs_f64();
+    seconds.load = loading.elapsed().as_secs_f64();
+    let building = Instant::now();
     let film = Film::new(&description.film)?;
     let scene = Scene::new(&description)?;
-    seconds.build = start.elapsed().as_secs_f64() - seconds.load;
+    seconds.build = building.elapsed().as_secs_f64();
     if scene.degenerate() > 0 {
         eprintln!("warning: {} shapes or triangles without area were dropped", scene.degenerate());
     }
