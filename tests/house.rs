@@ -188,3 +188,13 @@ fn every_dependency_has_its_line_in_the_readme() {
         }
     }
 }
+
+#[test]
+fn the_readme_quotes_the_embedding_example_as_it_is() {
+    let read = |name: &str| fs::read_to_string(root().join(name)).expect("a text");
+    let (readme, example) = (read("README.md"), read("examples/embed.rs"));
+    let (_, quote) = readme.split_once("```rust\n").expect("a quote in README.md");
+    let (quote, _) = quote.split_once("```").expect("the quote's end");
+    let indented: String = quote.lines().map(|line| format!("    {line}\n")).collect();
+    assert!(example.contains(&indented), "README.md quotes what examples/embed.rs does not hold:\n{quote}");
+}
