@@ -2,6 +2,8 @@ use std::error::Error as _;
 
 use exr::prelude::traits::*;
 
+use std::fs;
+
 use super::*;
 
 type Tested = std::result::Result<(), Box<dyn std::error::Error>>;
