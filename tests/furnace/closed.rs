@@ -29,7 +29,7 @@ fn furnace(name: &str, camera: &str, samples: u32) {
 
 #[test]
 fn a_shining_ball_brings_l_rho_to_the_k_minus_1() {
-    furnace("sphere", "perspective", 512);
+    furnace("sphere", "perspective", 1024);
 }
 
 #[test]
