@@ -36,6 +36,8 @@ struct End<'a> {
     throughput: Spectrum,
     /// Segments from the lens to here.
     length: u32,
+    /// Whether techniques other than s = 0 and s = 1 can make this path.
+    joined: bool,
 }
 
 /// Traces one camera walk and joins each of its vertices.
@@ -75,20 +77,25 @@ impl<'s, S: Scene, P: Sampler, F: Film> CameraWalk<'_, 's, S, P, F> {
                 {
                     let at = Point::distant(previous.position, -direction);
                     side = side.advance(heuristic, &step(&previous, &at, direction, pdf, pdf_rev, delta, effort));
-                    self.light_hit(id, &at, &previous, direction, delta, &End { side: &side, throughput, length });
+                    // A lens that sees only so far is never shown what is infinitely far.
+                    let clipped = length == 1 && seen.far < Real::INFINITY;
+                    let joined = length <= self.joined_length && !clipped;
+                    self.light_hit(id, &at, &previous, direction, delta, &End { side: &side, throughput, length, joined });
                 }
                 return;
             };
             side = side.advance(heuristic, &step(&previous, &point, direction, pdf, pdf_rev, delta, effort));
             if let Some(id) = scene.light_id_at(hit) {
-                self.light_hit(id, &point, &previous, direction, delta, &End { side: &side, throughput, length });
+                let joined = length <= self.joined_length;
+                self.light_hit(id, &point, &previous, direction, delta, &End { side: &side, throughput, length, joined });
             }
             if length >= max_depth {
                 return;
             }
             let Some(here) = Vertex::new(point, scene.bsdf(&point, hit), -direction, Carried::Radiance) else { return };
             if here.joins() {
-                let end = End { side: &side, throughput, length };
+                // What is joined here makes a path of one segment more at least.
+                let end = End { side: &side, throughput, length, joined: length < self.joined_length };
                 if techniques.uses(Join::NextEvent) {
                     self.next_event(&here, &end);
                 }
@@ -127,7 +134,7 @@ impl<'s, S: Scene, P: Sampler, F: Film> CameraWalk<'_, 's, S, P, F> {
             return;
         }
         let made = f64::from(self.scene.light_chance(id, None).0) * f64::from(exit.end.value());
-        let joined = end.length <= self.joined_length;
+        let joined = end.joined;
         // Joining the last two vertices instead: the walk's own x_0 shown to the lens, or next event, which knows its receiver.
         // No direction is shown to a camera that is itself one direction.
         let apart = at.place == Place::Distant && previous.place == Place::Distant;
@@ -181,7 +188,7 @@ impl<'s, S: Scene, P: Sampler, F: Film> CameraWalk<'_, 's, S, P, F> {
         if exit.end.can_be_hit() {
             others += heuristic.of(techniques.light_hit * f64::from(scatter.pdf.0) * to_light);
         }
-        if end.length < self.joined_length {
+        if end.joined {
             let made = f64::from(self.scene.light_chance(id, None).0) * f64::from(exit.end.value());
             let across = f64::from(exit.spread.value()) * to_vertex;
             others += heuristic.of(made) * end.side.sum(heuristic, across, f64::from(scatter.pdf_rev.0));

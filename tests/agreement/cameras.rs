@@ -2,7 +2,7 @@
 
 use bidir_kernel::Heuristic;
 
-use super::{ALL, agree};
+use super::{ALL, NOT_LIGHT, agree};
 use crate::{
     pictures::{BDPT, LIGHT, PATH},
     scenes::*,
@@ -54,6 +54,14 @@ fn a_wide_angle_with_an_off_centre_axis() {
 fn a_clipped_view() {
     let clips = float("near_clip", 3.2) + &float("far_clip", 6.0);
     agree("clipped", &read(&seen_by(&camera("perspective", &(clips + &film(16))))), ALL);
+}
+
+/// A lens that sees only so far is never shown the sky by a light walk: path tracing alone finds what it sees directly.
+#[test]
+fn a_clipped_view_of_the_sky() {
+    let clips = float("near_clip", 3.2) + &float("far_clip", 6.0);
+    let sky = emitter("constant", &rgb("radiance", "0.8, 0.9, 1"));
+    agree("clipped_sky", &read(&(seen_by(&camera("perspective", &(clips + &film(16)))) + &sky)), NOT_LIGHT);
 }
 
 #[test]

@@ -68,6 +68,13 @@ fn agree_after(effort: u32, name: &str, subject: &Subject, estimators: &[Estimat
         let mean = picture.mean(picture.whole(), &[0, 1, 2]);
         assert!(mean.mean > 0.0, "{name}: {} is black", estimator.name);
         let doubt = mean.error / mean.mean;
+        println!(
+            "{name}: {} {:.4} ± {:.2} %, {} samples per pixel",
+            estimator.name,
+            mean.mean,
+            100.0 * doubt,
+            estimator.samples * effort * BATCHES
+        );
         assert!(doubt < DOUBT, "{name}: {} says {:.4} ± {:.2} %, too little to compare with", estimator.name, mean.mean, 100.0 * doubt);
     }
     let folder = std::env::temp_dir().join("bidir-tests").join(name);

@@ -13,7 +13,7 @@ use crate::{
         progress::{Goal, Progress, Verbosity},
         stats::{self, CpuSeconds, Geometry, Seconds, Stats},
     },
-    error::Result,
+    error::{Error, Result},
     film::{Film, Noise},
     image::write::{self, Layers},
     load,
@@ -113,6 +113,9 @@ pub(super) fn run(arguments: &Render) -> Result<Outcome> {
     if !arguments.quiet {
         let Status { samples, elapsed, .. } = status;
         println!("{samples} samples per pixel in {:.1} s: {}", elapsed.as_secs_f64(), output.display());
+    }
+    if status.failed {
+        return Err(Error::new("a render thread broke down; what was rendered before is saved", "this is a bug; please report it"));
     }
     Ok(if status.interrupted { Outcome::Interrupted } else { Outcome::Done })
 }

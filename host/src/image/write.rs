@@ -43,7 +43,7 @@ enum Format {
     Png,
 }
 
-/// Whether [`write`] could write there: the extension is known, and the folder takes a file. Leaves nothing behind.
+/// Whether [`write()`] could write there: the extension is known, and the folder takes a file. Leaves nothing behind.
 /// To be asked before a render starts.
 pub fn check_writable(path: &Path) -> Result<()> {
     format_of(path)?;

@@ -11,7 +11,7 @@ const MAX_SIDE: u64 = 1 << 20;
 /// The most pixels of an image.
 const MAX_PIXELS: u64 = 1 << 30;
 /// The widest filter, in pixels.
-const MAX_RADIUS: f64 = 32.0;
+const MAX_RADIUS: f64 = 15.0;
 
 /// The film that an element describes, or Mitsuba's default.
 pub(super) fn film(ids: &Ids, element: Option<&Element>) -> Result<FilmSettings> {

@@ -259,7 +259,7 @@ fn lights(scene: &Scene) -> Vec<Lights> {
             LightSource::Envmap(_) => 5,
         };
         kinds[kind].count += 1;
-        kinds[kind].power += f64::from(light.power());
+        kinds[kind].power += light.power();
     }
     let total: f64 = kinds.iter().map(|kind| kind.power).sum();
     let with_share = |kind: Lights| Lights { share: kind.power / total, ..kind };

@@ -70,6 +70,8 @@ pub struct Status {
     pub rays: RayCounts,
     /// Whether it was interrupted.
     pub interrupted: bool,
+    /// Whether a render thread broke down; what was on the film before stays.
+    pub failed: bool,
 }
 
 /// Renders onto an empty `film`. After each pass, `report` is told where the render stands and answers the estimated error,
@@ -89,7 +91,10 @@ pub fn render<S: Store>(
     };
     while status.samples < last {
         let end = pass_end(status.samples).min(last).min(affordable(&status, job.target));
-        let Some(claimed) = run(scene, film, job, end, Some(interrupt), &mut status) else { return status };
+        let Some(claimed) = run(scene, film, job, end, Some(interrupt), &mut status) else {
+            status.failed = true;
+            return status;
+        };
         if claimed < end || interrupt.load(Ordering::Relaxed) {
             // Finish the sample that some pixels have already.
             run(scene, film, job, claimed, None, &mut status);
@@ -140,6 +145,17 @@ fn run<S: Store>(scene: &Scene, film: &S, job: &Job, end: u32, interrupt: Option
     Some(begun)
 }
 
+/// Lets the other threads go if this one breaks down: what it had claimed never arrives.
+struct Guard<'a, S: Store>(&'a S);
+
+impl<S: Store> Drop for Guard<'_, S> {
+    fn drop(&mut self) {
+        if std::thread::panicking() {
+            self.0.abandon();
+        }
+    }
+}
+
 /// What one thread did.
 struct Worked {
     begun: u32,
@@ -155,6 +171,7 @@ fn chosen<S: Store>(scene: &Scene, film: &S, job: &Job, end: u32, interrupt: Opt
 }
 
 fn work<S: Store, N: Source>(scene: &Scene, film: &S, job: &Job, end: u32, interrupt: Option<&AtomicBool>) -> Worked {
+    let _guard = Guard(film);
     let clock = cpu_time::ThreadTime::now();
     let view = View::new(scene);
     let mut light_path = light_path(&job.strategy);

@@ -94,7 +94,7 @@ impl Builder<'_> {
 
     fn shape(&mut self, shape: &description::Shape) -> Result<()> {
         let index = self.shapes.len() as u32;
-        let hidden = shape.radiance.is_some() && self.description.integrator.hide_emitters;
+        let hidden = shape.radiance.is_some_and(|radiance| !radiance.is_black()) && self.description.integrator.hide_emitters;
         let visibility = if hidden { Visibility::HiddenFromLens } else { Visibility::Everywhere };
         let facing = |flip: bool| if flip { -1.0 } else { 1.0 };
         let (form, facing, extent) = match &shape.geometry {

@@ -23,8 +23,9 @@ pub enum SceneCamera {
 impl SceneCamera {
     /// The sensor in a scene whose origin was moved to `origin`.
     pub fn new(sensor: &Sensor, film: &FilmSettings, origin: DVec3) -> Result<Self> {
-        let (axes, lengths) = axes(&sensor.to_world)
-            .ok_or_else(|| Error::at(&sensor.place, "the sensor's to_world is degenerate", "give it three independent axes"))?;
+        let (axes, lengths) = axes(&sensor.to_world).ok_or_else(|| {
+            Error::at(&sensor.place, "the sensor's to_world is degenerate or sheared", "give it three axes perpendicular to each other")
+        })?;
         let position = (sensor.to_world.translation - origin).as_vec3();
         let near = sensor.near_clip.unwrap_or(0.0) as Real;
         let far = sensor.far_clip.map_or(Real::INFINITY, |far| far as Real);
@@ -68,14 +69,16 @@ impl SceneCamera {
     }
 }
 
-/// The unit axes of a transform whose axes are perpendicular, and their lengths.
+/// The unit axes of a transform whose axes are perpendicular, and their lengths; `None` for any other transform.
 fn axes(to_world: &DAffine3) -> Option<([Vec3; 3], DVec3)> {
     let m = to_world.matrix3;
     let lengths = DVec3::new(m.x_axis.length(), m.y_axis.length(), m.z_axis.length());
     if !(lengths.min_element() > 0.0 && lengths.is_finite()) {
         return None;
     }
-    Some(([(m.x_axis / lengths.x).as_vec3(), (m.y_axis / lengths.y).as_vec3(), (m.z_axis / lengths.z).as_vec3()], lengths))
+    let [x, y, z] = [m.x_axis / lengths.x, m.y_axis / lengths.y, m.z_axis / lengths.z];
+    let square = |a: DVec3, b: DVec3| a.dot(b).abs() <= 1e-4;
+    (square(x, y) && square(y, z) && square(z, x)).then(|| ([x.as_vec3(), y.as_vec3(), z.as_vec3()], lengths))
 }
 
 fn film_plane(sensor: &Sensor, film: &FilmSettings, half: Vec2) -> FilmPlane {

@@ -10,6 +10,9 @@ use crate::scene::{
 /// Up to this many lights, next event looks at each one from where it stands.
 const MOST_LOOKED_AT: usize = 16;
 
+/// How many numbers a sampler can give: multiples of 2^−24.
+const STEPS: u64 = 1 << 24;
+
 /// The lights and the choice among them: for a light walk by power; for a receiver by what reaches it, or, among many lights, by power.
 #[derive(Clone, Debug, Default)]
 pub struct Lights {
@@ -24,28 +27,29 @@ pub struct Lights {
 impl Lights {
     /// Those of `sources` that shine at all; the others are dropped. The second value maps an index in `sources` to its light.
     pub fn new(sources: Vec<LightSource>) -> (Self, Vec<Option<LightId>>) {
-        let powers: Vec<f64> = sources.iter().map(|source| f64::from(source.power())).collect();
-        let total: f64 = powers.iter().sum();
+        let powers: Vec<f64> = sources.iter().map(LightSource::power).collect();
+        let shines = |power: f64| power > 0.0 && power.is_finite();
+        let total: f64 = powers.iter().filter(|&&power| shines(power)).sum();
+        let count = powers.iter().filter(|&&power| shines(power)).count();
         let mut lights = Self::default();
         let mut ids = Vec::with_capacity(sources.len());
-        let count = sources.len() as f64;
-        let mut sum = 0.0;
+        let (mut sum, mut before) = (0.0, 0);
         for (source, power) in sources.into_iter().zip(powers) {
-            let shines = power > 0.0 && power.is_finite() && total.is_finite();
-            ids.push(shines.then_some(LightId(lights.sources.len() as u32)));
-            if !shines {
+            ids.push(shines(power).then_some(LightId(lights.sources.len() as u32)));
+            if !shines(power) {
                 continue;
             }
             if matches!(source, LightSource::Constant(_) | LightSource::Envmap(_)) {
                 lights.environment = Some(LightId(lights.sources.len() as u32));
             }
-            let before = sum as Real;
-            // A little for every light, so that one 12 decades weaker is still found.
-            sum += 0.99 * power / total + 0.01 / count;
             lights.sources.push(source);
-            // The share is what the cumulative table gives, so that what is picked and what is asked agree to the bit.
-            lights.shares.push(sum as Real - before);
-            lights.cumulative.push(sum as Real);
+            // Random numbers come in steps. A light owns a whole number of them, at least one, however weak it is: so what is
+            // picked and what is asked afterwards agree exactly.
+            sum += power / total;
+            let end = lights.sources.len() as u64 + (sum.min(1.0) * (STEPS.saturating_sub(count as u64)) as f64).round() as u64;
+            lights.shares.push((end - before) as Real / STEPS as Real);
+            lights.cumulative.push(end as Real / STEPS as Real);
+            before = end;
         }
         (lights, ids)
     }
@@ -172,5 +176,44 @@ fn solid_angle(extent: &LightExtent, lit: &Point) -> Real {
         LightExtent::Ball(ball) => round(ball.center, extent.area()),
         LightExtent::Tube(tube) => round(tube.base + tube.axis * 0.5, extent.area()),
         LightExtent::Surface(surface) => round(surface.center, extent.area()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use bidir_kernel::{Frame, Spectrum, light::PointLight};
+    use bidir_standard::Isotropic;
+
+    use super::*;
+
+    fn point(intensity: Real) -> LightSource {
+        let profile = Isotropic { intensity: Spectrum::splat(intensity) };
+        LightSource::Point(PointLight { position: Vec3::ZERO, frame: Frame::from_z(Vec3::Z), profile })
+    }
+
+    #[test]
+    fn what_is_picked_and_what_is_asked_agree_whatever_lights_are_black() {
+        let intensities = [0.0, 1.0, 0.0, 1e-12, 3.0, 0.0];
+        let (lights, ids) = Lights::new(intensities.map(point).to_vec());
+        assert_eq!(ids, [None, Some(LightId(0)), None, Some(LightId(1)), Some(LightId(2)), None]);
+        let mut total = 0.0;
+        for id in 0..3 {
+            let Chance(chance) = lights.chance(LightId(id), None);
+            // The first and the last number of the light's own.
+            let first = f64::from(total);
+            total += chance;
+            for u in [first, f64::from(total) - 1.0 / STEPS as f64] {
+                assert_eq!(lights.pick(None, u as Real), Some((LightId(id), Chance(chance))), "{u}");
+            }
+            assert!(chance > 0.0);
+        }
+        assert_eq!(total, 1.0);
+    }
+
+    #[test]
+    fn many_lights_share_all_the_chance_there_is() {
+        let (lights, _) = Lights::new((0..1000).map(|i| point(if i == 500 { 1e6 } else { 1e-6 })).collect());
+        let sum: f64 = (0..1000).map(|id| f64::from(lights.chance(LightId(id), None).0)).sum();
+        assert_eq!(sum, 1.0);
     }
 }

@@ -57,17 +57,16 @@ impl EnvironmentTables {
         standard::Envmap::new(self.image.width as usize, self.image.height as usize, &self.texels, &self.rows, &self.columns)
     }
 
-    /// ∫ of the radiance over all directions, mean of the bands.
+    /// ∫ of the radiance over all directions, mean of the bands: cell by cell, as the image is interpolated.
     pub fn total(&self) -> Real {
-        let rows = self.image.height.saturating_sub(1).max(1) as Real;
-        let mean =
-            |row: usize| self.texels[row * self.image.width as usize..][..self.image.width as usize].iter().map(|t| t.mean()).sum::<Real>();
-        let weighted: Real = (0..self.image.height as usize).map(|row| mean(row) * math::sin((row as Real / rows).min(1.0) * PI)).sum();
-        // A single row has no latitude to weigh by.
-        if self.image.height == 1 {
-            return 4.0 * PI * mean(0) / self.image.width as Real;
-        }
-        weighted / self.image.width as Real / rows * PI * 2.0 * PI
+        let (width, height) = (self.image.width as usize, self.image.height as usize);
+        let rows = height.saturating_sub(1).max(1);
+        let row_mean = |row: usize| {
+            let texels = &self.texels[row.min(height - 1) * width..][..width];
+            texels.iter().map(|texel| texel.mean()).sum::<Real>() / width as Real
+        };
+        let cells = (0..rows).map(|row| 0.5 * (row_mean(row) + row_mean(row + 1)) * math::sin((row as Real + 0.5) / rows as Real * PI));
+        cells.sum::<Real>() / rows as Real * PI * 2.0 * PI
     }
 }
 
@@ -113,20 +112,21 @@ impl LightSource {
         }
     }
 
-    /// Power in W, mean of the bands: what a light walk chooses by.
-    pub fn power(&self) -> Real {
-        let disk = |radius: Real| PI * radius * radius;
+    /// Power in W, mean of the bands: what a light walk chooses by. f64, since areas and radiances near the ends of f32 multiply.
+    pub fn power(&self) -> f64 {
+        let pi = std::f64::consts::PI;
+        let disk = |radius: Real| pi * f64::from(radius) * f64::from(radius);
         match self {
-            Self::Area(light) => PI * light.extent.area() * light.profile.radiance.mean(),
-            Self::Point(light) => 4.0 * PI * light.profile.intensity.mean(),
+            Self::Area(light) => pi * f64::from(light.extent.area()) * f64::from(light.profile.radiance.mean()),
+            Self::Point(light) => 4.0 * pi * f64::from(light.profile.intensity.mean()),
             Self::Spot(light) => {
                 let spot = &light.profile;
                 let half = 0.5 * (spot.cutoff + spot.beam_width);
-                2.0 * PI * (1.0 - math::cos(half)) * spot.intensity.mean()
+                2.0 * pi * f64::from(1.0 - math::cos(half)) * f64::from(spot.intensity.mean())
             }
-            Self::Directional(light) => disk(light.radius) * light.irradiance.mean(),
-            Self::Constant(light) => disk(light.radius) * 4.0 * PI * light.profile.radiance.mean(),
-            Self::Envmap(light) => disk(light.radius) * light.profile.total(),
+            Self::Directional(light) => disk(light.radius) * f64::from(light.irradiance.mean()),
+            Self::Constant(light) => disk(light.radius) * 4.0 * pi * f64::from(light.profile.radiance.mean()),
+            Self::Envmap(light) => disk(light.radius) * f64::from(light.profile.total()),
         }
     }
 }

@@ -63,8 +63,9 @@ impl<P: Profile> Light for EnvironmentLight<P> {
     fn emitted(&self, at: &Point, _: Vec3) -> Exit {
         let out = self.profile.eval(Vec2::ZERO, self.frame.to_local(at.normal));
         // A lens may stand outside the sphere, and see past it along a line that no light walk takes.
-        let across = (at.position - self.center).cross(at.normal);
-        let walked = dot(across, across) <= self.radius * self.radius;
+        let from_center = at.position - self.center;
+        let across = from_center.cross(at.normal);
+        let walked = dot(across, across) <= self.radius * self.radius && dot(from_center, at.normal) >= -self.radius;
         let spread = if walked { self.spread() } else { Spread::Parallel(PerArea(0.0)) };
         Exit { radiance: out.radiance, end: EndDensity::Direction(out.pdf), spread }
     }
