@@ -37,6 +37,13 @@ impl Microfacet {
     /// so that both make the same decision.
     pub const LEAST: Real = 6e-5;
 
+    /// With the roughness `alpha` along x and y, but for what of `alpha_u` and `alpha_v` is not negative.
+    #[inline(always)]
+    pub fn with_alphas(distribution: Distribution, alpha: Real, alpha_u: Real, alpha_v: Real) -> Self {
+        let along = |own: Real| if own < 0.0 { alpha } else { own };
+        Self { distribution, alpha_u: along(alpha_u), alpha_v: along(alpha_v) }
+    }
+
     /// Whether the roughness is too little to be told from a smooth surface (0 and NaN included).
     #[inline(always)]
     pub fn is_smooth(&self) -> bool {

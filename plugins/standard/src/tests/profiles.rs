@@ -176,3 +176,10 @@ fn parallel_light_fills_the_disk_with_its_irradiance() {
     assert_eq!((seen.direction, seen.weight), (-direction, WARM));
     assert!(matches!(sun.next_event_density(&seen.point, &lit), EndDensity::Chance(_)));
 }
+
+#[test]
+fn a_spot_without_a_beam_width_falls_off_from_three_quarters_of_its_angle_on() {
+    let absent = Spot::from_degrees(WARM, 180.0, -1.0);
+    assert_eq!((absent.cutoff, absent.beam_width), (PI, 0.75 * PI));
+    assert_eq!(Spot::from_degrees(WARM, 180.0, 0.0).beam_width, 0.0);
+}
