@@ -2,7 +2,11 @@
 
 use std::{boxed::Box, string::String, vec, vec::Vec};
 
-use bidir_sdk::{Emitted, EndDensity, Light, Point, Profile, Real, Spectrum, Vec2, Vec3, math::dot, real::ONE_MINUS_EPSILON};
+use bidir_sdk::{
+    Emitted, EndDensity, Light, Point, Profile, Real, Spectrum, Vec2, Vec3,
+    math::dot,
+    real::{ONE_MINUS_EPSILON, PI},
+};
 
 use super::{
     chi_square::{Histogram, masses},
