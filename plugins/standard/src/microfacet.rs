@@ -2,7 +2,7 @@
 
 use bidir_sdk::{
     Real, Vec3,
-    math::{dot, erfc, exp, ln, max, normalize, safe_sqrt, sin_cos, sqr, sqrt, vec3},
+    math::{dot, erfc, exp, ln, max, min, normalize, safe_sqrt, sin_cos, sqr, sqrt, vec3},
     real::{INV_PI, PI},
 };
 
@@ -144,7 +144,7 @@ fn visible_slope(cos: Real, sin: Real, u: Real) -> Real {
     let (mut low, mut high) = (-STEEPEST, if cos < STEEPEST * sin { cos / sin } else { STEEPEST });
     let target = u * cdf(high, exp(-sqr(high)));
     // Exact at grazing and at normal incidence.
-    let mut x = (cos * gaussian(u) - sin * sqrt(-ln(max(u, SMALLEST)))).clamp(low, high);
+    let mut x = min(max(cos * gaussian(u) - sin * sqrt(-ln(max(u, SMALLEST))), low), high);
     for _ in 0..24 {
         let gauss = exp(-sqr(x));
         let error = cdf(x, gauss) - target;
