@@ -1,6 +1,6 @@
 //! Distributions of microfacets: their density, what of them is visible, and the sampling of the visible ones.
 
-use bidir_kernel::{
+use bidir_sdk::{
     Real, Vec3,
     math::{dot, erfc, exp, ln, normalize, sin_cos, sqr, sqrt, vec3},
     real::{INV_PI, PI},
@@ -36,6 +36,13 @@ impl Microfacet {
     /// a thousand times as wide still has its densities to 0.1 %, and no eye tells it from a mirror. The same in f64,
     /// so that both make the same decision.
     pub const LEAST: Real = 6e-5;
+
+    /// With the roughness `alpha` along x and y, but for what of `alpha_u` and `alpha_v` is not negative.
+    #[inline(always)]
+    pub fn with_alphas(distribution: Distribution, alpha: Real, alpha_u: Real, alpha_v: Real) -> Self {
+        let along = |own: Real| if own < 0.0 { alpha } else { own };
+        Self { distribution, alpha_u: along(alpha_u), alpha_v: along(alpha_v) }
+    }
 
     /// Whether the roughness is too little to be told from a smooth surface (0 and NaN included).
     #[inline(always)]
