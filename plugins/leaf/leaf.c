@@ -48,17 +48,18 @@ static Rgb transmittance(const Params *p) {
     return (Rgb){min(t.r, 1.0f - max(f.r, b.r)), min(t.g, 1.0f - max(f.g, b.g)), min(t.b, 1.0f - max(f.b, b.b))};
 }
 
-// The chance that light from the side of `z` passes.
-static float pass(const Params *p, float z) {
+// The chance that light from the side of `z` goes on through the sheet, or on that side; a black side absorbs.
+static float chance(const Params *p, float z, int through) {
     const float r = mean(reflectance(p, z)), t = mean(transmittance(p));
-    return r + t > 0.0f ? t / (r + t) : 0.0f;
+    if (!(r + t > 0.0f)) return 0.0f;
+    const float pass = t / (r + t);
+    return through ? pass : 1.0f - pass;
 }
 
 static void densities(const Params *p, float wo_z, float wi_z, float *pdf, float *pdf_rev) {
     const int through = (wo_z > 0.0f) != (wi_z > 0.0f);
-    const float out = pass(p, wo_z), back = pass(p, wi_z);
-    *pdf = (through ? out : 1.0f - out) * (__builtin_fabsf(wi_z) * INV_PI);
-    *pdf_rev = (through ? back : 1.0f - back) * (__builtin_fabsf(wo_z) * INV_PI);
+    *pdf = chance(p, wo_z, through) * (__builtin_fabsf(wi_z) * INV_PI);
+    *pdf_rev = chance(p, wi_z, through) * (__builtin_fabsf(wo_z) * INV_PI);
 }
 
 static EvalOut eval(const Params *p, float wo_z, float wi_z) {
@@ -112,14 +113,13 @@ EXPORT("bsdf_sample")
 void bsdf_sample(SampleOut *out, const Params *p, int carried, float ox, float oy, float oz, float u0, float u1, float u2) {
     *out = (SampleOut){.lobe = NO_LOBE};
     if (!has_side(oz)) return;
-    const Rgb r = reflectance(p, oz), t = transmittance(p);
-    if (!(mean(r) + mean(t) > 0.0f)) return;
-    const float chance = pass(p, oz);
-    const int through = u2 < chance;
+    const float pass = chance(p, oz, 1), stay = chance(p, oz, 0);
+    if (!(pass + stay > 0.0f)) return;
+    const int through = u2 < pass;
     cosine_hemisphere(u0, u1, out->wi);
     if (through == (oz > 0.0f)) out->wi[2] = -out->wi[2];
-    const Rgb albedo = through ? t : r;
-    const float made = through ? chance : 1.0f - chance;
+    const Rgb albedo = through ? transmittance(p) : reflectance(p, oz);
+    const float made = through ? pass : stay;
     out->weight = (Rgb){albedo.r / made, albedo.g / made, albedo.b / made};
     densities(p, oz, out->wi[2], &out->pdf, &out->pdf_rev);
     out->lobe = through ? DIFFUSE_TRANSMISSION : DIFFUSE_REFLECTION;
