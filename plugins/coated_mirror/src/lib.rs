@@ -11,7 +11,7 @@
 //! and coat, exact where the metal is smooth; min keeps it reciprocal and never gains. tint^d is absorption
 //! along the two legs, d = (1/cos θ_o' + 1/cos θ_i')/2: the colour at normal incidence, deeper towards grazing.
 
-use bidir_kernel::{
+use bidir_sdk::{
     Bsdf, Carried, Chance, Lobe, Made, PerSolidAngle, Real, Scatter, Scattered, Spectrum, Vec3,
     math::{dot, normalize, pow, sqr, sqrt, vec3},
 };
@@ -20,19 +20,20 @@ use bidir_standard::{
     fresnel::{self, RelativeIndex},
 };
 
-/// Coated metal: scatters on the side of its normal.
-#[derive(Clone, Copy, Debug)]
-pub struct CoatedMirror {
-    /// Index of refraction of the coat, 1 … 3.
-    pub int_ior: Real,
-    /// What a coat leaves of light that passes it twice at normal incidence.
-    pub tint: Spectrum,
-    /// Real part of the metal's index of refraction.
-    pub eta: Spectrum,
-    /// Its imaginary part.
-    pub k: Spectrum,
-    /// Roughness of the metal, 0.001 … 1.
-    pub alpha: Real,
+bidir_sdk::parameters! {
+    /// Rough metal under a smooth coat of clear or coloured lacquer.
+    pub struct CoatedMirror {
+        /// Index of refraction of the coat, in air.
+        int_ior: float(min 1.0, max 3.0, label "Index of the coat") = 1.5;
+        /// What the coat leaves of light that passes it twice at normal incidence.
+        tint: rgb(min 0.0, max 1.0, texturable, label "Tint") = 1.0;
+        /// Real part of the metal's index of refraction; aluminium unless said.
+        eta: rgb(min 0.0, max 20.0, label "Eta") = [1.6575, 0.8804, 0.5212];
+        /// Its imaginary part.
+        k: rgb(min 0.0, max 20.0, label "k") = [9.2238, 6.2695, 4.837];
+        /// Roughness of the metal (GGX).
+        alpha: float(min 0.001, max 1.0, texturable, label "Roughness") = 0.2;
+    }
 }
 
 /// What one direction says, whatever the other is.
@@ -178,6 +179,8 @@ impl Bsdf for CoatedMirror {
         Lobe::GLOSSY_REFLECTION | Lobe::DELTA_REFLECTION
     }
 }
+
+bidir_sdk::bsdf! { CoatedMirror, lobes: [glossy_reflection, delta_reflection], isotropic: true }
 
 #[cfg(test)]
 mod tests {

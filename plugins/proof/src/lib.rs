@@ -13,7 +13,7 @@ pub mod light;
 mod macros;
 pub mod surface;
 
-use bidir_kernel::{
+use bidir_sdk::{
     Real, Vec3,
     math::{safe_sqrt, sin_cos, vec3},
     real::{ONE_MINUS_EPSILON, PI},

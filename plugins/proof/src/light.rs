@@ -1,6 +1,6 @@
 //! What binds a light's samples, densities and radiances together.
 
-use bidir_kernel::{Emitted, Profile, Real, Spectrum, Vec2, Vec3, math::dot, real::PI};
+use bidir_sdk::{Emitted, Profile, Real, Spectrum, Vec2, Vec3, math::dot, real::PI};
 
 use crate::{
     chi_square::{Histogram, masses},

@@ -1,6 +1,6 @@
 //! What binds a surface's samples, densities and values together.
 
-use bidir_kernel::{Bsdf, Carried, Lobe, Made, Real, Scattered, Vec3, math::dot};
+use bidir_sdk::{Bsdf, Carried, Lobe, Made, Real, Scattered, Vec3, math::dot};
 
 use crate::{
     chi_square::{Histogram, masses},

@@ -1,6 +1,6 @@
 //! A smooth metal.
 
-use bidir_kernel::{Bsdf, Carried, Chance, Lobe, Made, Real, Scatter, Scattered, Spectrum, Vec3, math::vec3};
+use bidir_sdk::{Bsdf, Carried, Chance, Lobe, Made, Real, Scatter, Scattered, Spectrum, Vec3, math::vec3};
 
 use crate::fresnel;
 

@@ -1,6 +1,6 @@
 //! A smooth boundary between two media.
 
-use bidir_kernel::{
+use bidir_sdk::{
     Bsdf, Carried, Chance, Lobe, Made, Real, Scatter, Scattered, Spectrum, Vec3,
     math::{sqr, vec3},
 };

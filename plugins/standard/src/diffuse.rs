@@ -1,6 +1,6 @@
 //! Scatters alike in every direction.
 
-use bidir_kernel::{
+use bidir_sdk::{
     Bsdf, Carried, Lobe, Made, PerSolidAngle, Real, Scatter, Scattered, Spectrum, Vec3,
     real::INV_PI,
     warp::{cosine_hemisphere, cosine_hemisphere_pdf},

@@ -1,6 +1,6 @@
 //! How much of unpolarised light a smooth boundary reflects.
 
-use bidir_kernel::{
+use bidir_sdk::{
     Real, Spectrum,
     math::{ln, safe_sqrt, sqr, sqrt},
 };

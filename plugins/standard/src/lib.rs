@@ -21,7 +21,7 @@
 //! | [`Envmap`] | a profile: an image of the surroundings |
 //! | [`Directional`] | a light: parallel rays from infinitely far away |
 //!
-//! Surfaces live in the shading frame of [`bidir_kernel::Bsdf`]. Those without transmission scatter only on the
+//! Surfaces live in the shading frame of [`bidir_sdk::Bsdf`]. Those without transmission scatter only on the
 //! side that the normal points to. The definitions are those of Mitsuba 3, so that one scene gives one image in both.
 #![no_std]
 #![allow(clippy::neg_cmp_op_on_partial_ord, reason = "`!(x > 0.0)` refuses NaN too")]

@@ -1,6 +1,6 @@
 //! Distributions of microfacets: their density, what of them is visible, and the sampling of the visible ones.
 
-use bidir_kernel::{
+use bidir_sdk::{
     Real, Vec3,
     math::{dot, erfc, exp, ln, normalize, sin_cos, sqr, sqrt, vec3},
     real::{INV_PI, PI},

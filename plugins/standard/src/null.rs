@@ -1,6 +1,6 @@
 //! A surface that is not there.
 
-use bidir_kernel::{Bsdf, Carried, Chance, Lobe, Made, Real, Scatter, Scattered, Spectrum, Vec3};
+use bidir_sdk::{Bsdf, Carried, Chance, Lobe, Made, Real, Scatter, Scattered, Spectrum, Vec3};
 
 /// Lets light pass as if nothing were there.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

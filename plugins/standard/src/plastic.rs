@@ -1,6 +1,6 @@
 //! A smooth dielectric coat over a diffuse base.
 
-use bidir_kernel::{
+use bidir_sdk::{
     Bsdf, Carried, Chance, Lobe, Made, PerSolidAngle, Real, Scatter, Scattered, Spectrum, Vec3,
     math::sqr,
     real::INV_PI,

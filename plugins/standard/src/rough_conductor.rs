@@ -1,6 +1,6 @@
 //! A metal of microfacets.
 
-use bidir_kernel::{
+use bidir_sdk::{
     Bsdf, Carried, Chance, Lobe, Made, PerSolidAngle, Real, Scatter, Scattered, Spectrum, Vec3,
     math::{dot, normalize},
 };

@@ -1,6 +1,6 @@
 //! A boundary of microfacets between two media.
 
-use bidir_kernel::{
+use bidir_sdk::{
     Bsdf, Carried, Lobe, Made, PerSolidAngle, Real, Scatter, Scattered, Spectrum, Vec3,
     math::{dot, normalize, sqr, vec3},
 };

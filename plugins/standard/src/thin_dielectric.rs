@@ -1,6 +1,6 @@
 //! Both boundaries of a thin slab at once.
 
-use bidir_kernel::{Bsdf, Carried, Chance, Lobe, Real, Scatter, Scattered, Spectrum, Vec3};
+use bidir_sdk::{Bsdf, Carried, Chance, Lobe, Real, Scatter, Scattered, Spectrum, Vec3};
 
 use crate::{
     conductor::mirrored,

@@ -5,23 +5,24 @@
 
 pub mod sheen;
 
-use bidir_kernel::{
-    Bsdf, Carried, Lobe, Made, PerSolidAngle, Real, Scatter, Scattered, Spectrum, Vec3,
+use bidir_sdk::{
+    Bsdf, Carried, Lobe, Made, PerSolidAngle, Real, Scatter, Scattered, Vec3,
     math::{safe_sqrt, sin_cos, vec3},
     real::{INV_PI, PI},
     warp::{cosine_hemisphere, cosine_hemisphere_pdf},
 };
 use sheen::Sheen;
 
-/// Cloth: scatters on the side of its normal.
-#[derive(Clone, Copy, Debug)]
-pub struct Velvet {
-    /// Colour of the cloth below the sheen.
-    pub reflectance: Spectrum,
-    /// Colour of the sheen.
-    pub tint: Spectrum,
-    /// How far the sheen reaches in from the silhouette, 0.1 … 1.
-    pub roughness: Real,
+bidir_sdk::parameters! {
+    /// Cloth whose fibres shine at grazing angles: velvet, felt, brushed cotton.
+    pub struct Velvet {
+        /// Colour of the cloth below the sheen.
+        reflectance: rgb(min 0.0, max 1.0, texturable, label "Colour") = [0.18, 0.02, 0.03];
+        /// Colour of the sheen.
+        tint: rgb(min 0.0, max 1.0, texturable, label "Sheen") = [0.8, 0.5, 0.45];
+        /// How far the sheen reaches in from the silhouette.
+        roughness: float(min 0.1, max 1.0, texturable, label "Roughness") = 0.3;
+    }
 }
 
 /// What one direction says, whatever the other is.
@@ -94,8 +95,12 @@ impl Bsdf for Velvet {
     }
 }
 
+bidir_sdk::bsdf! { Velvet, lobes: [diffuse_reflection, glossy_reflection], isotropic: true }
+
 #[cfg(test)]
 mod tests {
+    use bidir_sdk::Spectrum;
+
     use super::*;
 
     fn velvet(reflectance: Spectrum, tint: Spectrum, roughness: Real) -> Velvet {

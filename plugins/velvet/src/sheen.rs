@@ -1,7 +1,7 @@
 //! The sheen of Estevez & Kulla 2017, "Production Friendly Microfacet Sheen BRDF": fibres that stand up, as a
 //! distribution of microfacets whose normals lie near the horizon.
 
-use bidir_kernel::{
+use bidir_sdk::{
     Real, Vec3,
     math::{exp, floor, lerp, pow, sqrt},
     real::INV_PI,

@@ -1,7 +1,7 @@
 //! A projector with a pattern before its lens. `../README.md` holds the definition that this source and its twin in
 //! Zig follow.
 
-use bidir_kernel::{
+use bidir_sdk::{
     Emitted, PerSolidAngle, Profile, Real, Spectrum, Vec2, Vec3,
     math::{floor, sqrt, tan, vec3},
     profile::Profiled,
@@ -9,36 +9,24 @@ use bidir_kernel::{
 
 const DEGREE: Real = (core::f64::consts::PI / 180.0) as Real;
 
-/// What a cell of the picture shows.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Pattern {
-    /// A pane: bars on all four sides.
-    Window,
-    /// Upright bars.
-    Stripes,
-    /// Bars that lie.
-    Slats,
-    /// A round hole.
-    Dots,
-}
-
-/// A projector: a rectangular picture of cells, in front of a point.
-#[derive(Clone, Copy, Debug)]
-pub struct Gobo {
-    /// W/sr where the pattern is open.
-    pub intensity: Spectrum,
-    /// Degrees from the axis to the left and right edge of the picture.
-    pub half_width: Real,
-    /// Degrees from the axis to its upper and lower edge.
-    pub half_height: Real,
-    /// What a cell shows.
-    pub pattern: Pattern,
-    /// Cells across the picture, and down.
-    pub count: i32,
-    /// The open share of a cell's width.
-    pub opening: Real,
-    /// Width of the blurred edges, in cells.
-    pub softness: Real,
+bidir_sdk::parameters! {
+    /// A projector with a pattern before its lens: the light of a window, of a blind, stripes, dots.
+    pub struct Gobo {
+        /// W/sr where the pattern is open.
+        intensity: rgb(min 0.0, max 1e6, label "Intensity") = 1.0;
+        /// Degrees from the axis to the left and right edge of the picture.
+        half_width: float(min 0.5, max 80.0, label "Half width") = 20.0;
+        /// Degrees from the axis to its upper and lower edge.
+        half_height: float(min 0.5, max 80.0, label "Half height") = 20.0;
+        /// What a cell of the picture shows: a pane, upright bars, lying bars, a round hole.
+        pattern: choice Pattern { Window = "window", Stripes = "stripes", Slats = "slats", Dots = "dots" } = "window";
+        /// Cells across the picture, and down.
+        count: int(min 1, max 256, label "Count") = 2;
+        /// The open share of a cell's width.
+        opening: float(min 0.0, max 1.0, label "Opening") = 0.85;
+        /// Width of the blurred edges, in cells.
+        softness: float(min 0.0, max 1.0, label "Softness") = 0.05;
+    }
 }
 
 /// t²(3 − 2t), t kept within 0 … 1.
@@ -103,6 +91,8 @@ impl Profile for Gobo {
         (profiled.pdf.0 > 0.0).then_some(Emitted { direction, profiled })
     }
 }
+
+bidir_sdk::light! { Gobo, emits_from: [point] }
 
 #[cfg(test)]
 mod tests {

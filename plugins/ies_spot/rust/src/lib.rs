@@ -1,7 +1,7 @@
 //! A lamp with a measured distribution. `../README.md` holds the definition that this source and its twin in
 //! AssemblyScript follow.
 
-use bidir_kernel::{
+use bidir_sdk::{
     Emitted, PerSolidAngle, Profile, Real, Spectrum, Vec2, Vec3,
     math::{atan2, floor, safe_sqrt, sin_cos, sqrt, vec3},
     profile::Profiled,
@@ -13,9 +13,66 @@ const ZONES: usize = 18;
 const DEGREE: Real = (core::f64::consts::PI / 180.0) as Real;
 const NOTHING: Profiled = Profiled { radiance: Spectrum::BLACK, pdf: PerSolidAngle(0.0) };
 
+bidir_sdk::parameters! {
+    /// A lamp with a measured distribution: intensities at equal steps of the angle to its axis.
+    pub struct IesSpot {
+        /// W/sr where the web says 1.
+        intensity: rgb(min 0.0, max 1e6, label "Intensity") = 1.0;
+        /// Degrees from one value to the next: 5 covers 90°, 10 the whole sphere.
+        step: float(min 0.5, max 10.0, label "Step") = 5.0;
+        /// Relative intensity on the axis.
+        c0: float(min 0.0, max 1e6) = 1.0;
+        /// Relative intensity 1 step from the axis.
+        c1: float(min 0.0, max 1e6) = 0.98;
+        /// Relative intensity 2 steps from the axis.
+        c2: float(min 0.0, max 1e6) = 0.93;
+        /// Relative intensity 3 steps from the axis.
+        c3: float(min 0.0, max 1e6) = 0.86;
+        /// Relative intensity 4 steps from the axis.
+        c4: float(min 0.0, max 1e6) = 0.78;
+        /// Relative intensity 5 steps from the axis.
+        c5: float(min 0.0, max 1e6) = 0.66;
+        /// Relative intensity 6 steps from the axis.
+        c6: float(min 0.0, max 1e6) = 0.5;
+        /// Relative intensity 7 steps from the axis.
+        c7: float(min 0.0, max 1e6) = 0.34;
+        /// Relative intensity 8 steps from the axis.
+        c8: float(min 0.0, max 1e6) = 0.2;
+        /// Relative intensity 9 steps from the axis.
+        c9: float(min 0.0, max 1e6) = 0.1;
+        /// Relative intensity 10 steps from the axis.
+        c10: float(min 0.0, max 1e6) = 0.05;
+        /// Relative intensity 11 steps from the axis.
+        c11: float(min 0.0, max 1e6) = 0.03;
+        /// Relative intensity 12 steps from the axis.
+        c12: float(min 0.0, max 1e6) = 0.02;
+        /// Relative intensity 13 steps from the axis.
+        c13: float(min 0.0, max 1e6) = 0.015;
+        /// Relative intensity 14 steps from the axis.
+        c14: float(min 0.0, max 1e6) = 0.01;
+        /// Relative intensity 15 steps from the axis.
+        c15: float(min 0.0, max 1e6) = 0.006;
+        /// Relative intensity 16 steps from the axis.
+        c16: float(min 0.0, max 1e6) = 0.003;
+        /// Relative intensity 17 steps from the axis.
+        c17: float(min 0.0, max 1e6) = 0.001;
+        /// Relative intensity 18 steps from the axis.
+        c18: float(min 0.0, max 1e6) = 0.0;
+    }
+}
+
+impl IesSpot {
+    fn lamp(&self) -> Lamp {
+        let near = [self.c0, self.c1, self.c2, self.c3, self.c4, self.c5, self.c6, self.c7, self.c8, self.c9];
+        let far = [self.c10, self.c11, self.c12, self.c13, self.c14, self.c15, self.c16, self.c17, self.c18];
+        let web = core::array::from_fn(|i| if i < near.len() { near[i] } else { far[i - near.len()] });
+        Lamp { intensity: self.intensity, step: self.step, web }
+    }
+}
+
 /// A lamp: intensities at equal steps of the angle to z, and straight lines between them.
 #[derive(Clone, Copy, Debug)]
-pub struct IesSpot {
+pub struct Lamp {
     /// W/sr where the web says 1.
     pub intensity: Spectrum,
     /// Degrees from one value to the next, 0.5 … 10.
@@ -35,7 +92,7 @@ struct Zones {
 }
 
 impl Zones {
-    fn new(lamp: &IesSpot) -> Self {
+    fn new(lamp: &Lamp) -> Self {
         let (s1, c1) = sin_cos(0.5 * (lamp.step * DEGREE));
         let (sin_step, cos_step) = (2.0 * s1 * c1, 1.0 - 2.0 * s1 * s1);
         let mut zones = Self { means: [0.0; ZONES], extents: [0.0; ZONES], total: 0.0 };
@@ -68,7 +125,7 @@ impl Zones {
     }
 }
 
-impl IesSpot {
+impl Lamp {
     fn look_up(&self, direction: Vec3, zones: &Zones) -> Profiled {
         let angle = atan2(sqrt(direction.x * direction.x + direction.y * direction.y), direction.z);
         let place = angle / (self.step * DEGREE);
@@ -85,7 +142,7 @@ impl IesSpot {
     }
 }
 
-impl Profile for IesSpot {
+impl Profile for Lamp {
     fn eval(&self, _: Vec2, direction: Vec3) -> Profiled {
         self.look_up(direction, &Zones::new(self))
     }
@@ -104,6 +161,8 @@ impl Profile for IesSpot {
     }
 }
 
+bidir_sdk::light! { IesSpot => IesSpot::lamp, emits_from: [point] }
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -112,12 +171,12 @@ mod tests {
         core::array::from_fn(at)
     }
 
-    fn lamp(step: Real, web: [Real; ZONES + 1]) -> IesSpot {
-        IesSpot { intensity: Spectrum([3.0, 2.0, 1.0]), step, web }
+    fn lamp(step: Real, web: [Real; ZONES + 1]) -> Lamp {
+        Lamp { intensity: Spectrum([3.0, 2.0, 1.0]), step, web }
     }
 
     fn cases() -> Vec<(String, Box<dyn Profile>)> {
-        let case = |name: &str, lamp: IesSpot| (name.to_owned(), Box::new(lamp) as Box<dyn Profile>);
+        let case = |name: &str, lamp: Lamp| (name.to_owned(), Box::new(lamp) as Box<dyn Profile>);
         vec![
             case("falling", lamp(10.0, web(|i| 1.0 - i as Real / 18.0))),
             case("up and down", lamp(10.0, web(|i| ((i * 7) % 5) as Real))),
@@ -131,7 +190,7 @@ mod tests {
     bidir_proof::light_tests!(cases());
 
     /// Mean of intensity / pdf: the power in the first band.
-    fn power(lamp: &IesSpot) -> f64 {
+    fn power(lamp: &Lamp) -> f64 {
         let samples = 300;
         let one = |i: u32| {
             let u = [((i / samples) as Real + 0.5) / samples as Real, ((i % samples) as Real + 0.5) / samples as Real];

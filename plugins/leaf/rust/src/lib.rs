@@ -1,19 +1,20 @@
 //! A thin sheet that scatters light back and lets light through. `../README.md` holds the definition that this source
 //! and its twin in C follow.
 
-use bidir_kernel::{
+use bidir_sdk::{
     Bsdf, Carried, Lobe, Made, PerSolidAngle, Real, Scatter, Scattered, Spectrum, Vec3, math::vec3, real::INV_PI, warp::cosine_hemisphere,
 };
 
-/// A thin sheet, seen from both sides.
-#[derive(Clone, Copy, Debug)]
-pub struct Leaf {
-    /// Albedo of the side that the normal points to.
-    pub front: Spectrum,
-    /// Albedo of the other side.
-    pub back: Spectrum,
-    /// Share of light that passes, either way; less where it and an albedo would exceed 1.
-    pub transmittance: Spectrum,
+bidir_sdk::parameters! {
+    /// A thin sheet that scatters light back and lets light through: a leaf, paper, a lampshade.
+    pub struct Leaf {
+        /// Albedo of the side that the normal points to.
+        front: rgb(min 0.0, max 1.0, texturable, label "Front") = [0.07, 0.19, 0.03];
+        /// Albedo of the other side.
+        back: rgb(min 0.0, max 1.0, texturable, label "Back") = [0.16, 0.25, 0.1];
+        /// Share of light that passes, either way; less where it and an albedo would exceed 1.
+        transmittance: rgb(min 0.0, max 1.0, texturable, label "Transmittance") = [0.2, 0.38, 0.04];
+    }
 }
 
 impl Leaf {
@@ -74,6 +75,8 @@ impl Bsdf for Leaf {
         Lobe::DIFFUSE_REFLECTION | Lobe::DIFFUSE_TRANSMISSION
     }
 }
+
+bidir_sdk::bsdf! { Leaf, lobes: [diffuse_reflection, diffuse_transmission], isotropic: true }
 
 #[cfg(test)]
 mod tests {

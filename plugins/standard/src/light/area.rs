@@ -1,6 +1,6 @@
 //! The same radiance in every direction of the hemisphere.
 
-use bidir_kernel::{
+use bidir_sdk::{
     Emitted, PerSolidAngle, Profile, Real, Spectrum, Vec2, Vec3,
     profile::Profiled,
     warp::{cosine_hemisphere, cosine_hemisphere_pdf},

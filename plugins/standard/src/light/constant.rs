@@ -1,6 +1,6 @@
 //! The same radiance from everywhere.
 
-use bidir_kernel::{Emitted, Profile, Real, Spectrum, Vec2, Vec3, profile::Profiled};
+use bidir_sdk::{Emitted, Profile, Real, Spectrum, Vec2, Vec3, profile::Profiled};
 
 use super::Isotropic;
 

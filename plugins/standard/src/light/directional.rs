@@ -1,6 +1,6 @@
 //! Parallel rays from infinitely far away.
 
-use bidir_kernel::{
+use bidir_sdk::{
     Chance, Emission, EndDensity, Exit, Frame, Illumination, Light, PerArea, Point, Real, Spectrum, Spread, Vec3, real::PI, warp::disk,
 };
 

@@ -1,6 +1,6 @@
 //! An image of the surroundings.
 
-use bidir_kernel::{
+use bidir_sdk::{
     Emitted, PerSolidAngle, Profile, Real, Spectrum, Vec2, Vec3,
     math::{atan2, floor, lerp, sin, sin_cos, sqr, sqrt, vec3},
     profile::Profiled,

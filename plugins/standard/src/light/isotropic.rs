@@ -1,6 +1,6 @@
 //! The same intensity in every direction.
 
-use bidir_kernel::{
+use bidir_sdk::{
     Emitted, PerSolidAngle, Profile, Real, Spectrum, Vec2, Vec3,
     profile::Profiled,
     warp::{SPHERE_PDF, sphere},

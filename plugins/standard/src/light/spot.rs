@@ -1,6 +1,6 @@
 //! A cone that falls off towards its edge.
 
-use bidir_kernel::{
+use bidir_sdk::{
     Emitted, PerSolidAngle, Profile, Real, Spectrum, Vec2, Vec3,
     math::{atan2, sin, sqr, sqrt},
     profile::Profiled,

@@ -2,7 +2,7 @@
 
 use std::{vec, vec::Vec};
 
-use bidir_kernel::{
+use bidir_sdk::{
     Real, Vec3,
     math::{atan2, vec3},
 };

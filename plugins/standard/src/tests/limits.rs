@@ -2,7 +2,7 @@
 
 use std::vec::Vec;
 
-use bidir_kernel::{Bsdf, Carried, Lobe, Made, Real, Scattered, Vec3, math::dot, real::ONE_MINUS_EPSILON};
+use bidir_sdk::{Bsdf, Carried, Lobe, Made, Real, Scattered, Vec3, math::dot, real::ONE_MINUS_EPSILON};
 
 use super::{
     direction, numbers,
@@ -118,7 +118,7 @@ fn the_density_of_weak_refraction_integrates_to_its_share() {
     // In rings about −ω_o, crowded towards it: θ = π x³.
     let glass = rough_glass(1.05, Microfacet { distribution: Distribution::Ggx, alpha_u: 1.0, alpha_v: 1.0 });
     let wo = direction(0.1, 0.0);
-    let (about, steps) = (bidir_kernel::Frame::from_z(-wo), 800);
+    let (about, steps) = (bidir_sdk::Frame::from_z(-wo), 800);
     let mut mass = 0.0;
     for i in 0..steps {
         let x = (f64::from(i) + 0.5) / f64::from(steps);
@@ -142,7 +142,7 @@ fn equal_indices_pass_straight_through() {
         for wo in edges().into_iter().filter(|wo| wo.z != 0.0) {
             for u in corners() {
                 let sample = rough_glass(1.0, m).sample(wo, u, Carried::Radiance).expect("glass of index 1 absorbs nothing");
-                assert_eq!((sample.wi, sample.weight, sample.eta), (-wo, bidir_kernel::Spectrum::ONE, 1.0));
+                assert_eq!((sample.wi, sample.weight, sample.eta), (-wo, bidir_sdk::Spectrum::ONE, 1.0));
             }
         }
     }
@@ -174,8 +174,7 @@ fn glass_is_continuous_where_the_indices_are_equal() {
 
 #[test]
 fn rough_glass_agrees_with_smooth_glass_at_little_roughness() {
-    let smooth =
-        Dielectric { eta: 1.5, specular_reflectance: bidir_kernel::Spectrum::ONE, specular_transmittance: bidir_kernel::Spectrum::ONE };
+    let smooth = Dielectric { eta: 1.5, specular_reflectance: bidir_sdk::Spectrum::ONE, specular_transmittance: bidir_sdk::Spectrum::ONE };
     for m in microfacets(&[(1e-4, 1e-4)]) {
         for wo in [direction(0.8, 0.4), direction(-0.9, 0.4)] {
             for index in 0..1_000 {

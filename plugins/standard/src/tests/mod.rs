@@ -9,14 +9,14 @@ mod surfaces;
 
 use std::vec::Vec;
 
-use bidir_kernel::{
+use bidir_sdk::{
     Real, Vec3,
     math::{safe_sqrt, sin_cos, vec3},
     sampler::{Independent, Sampler},
 };
 
 /// π.
-const HALF_TURN: Real = bidir_kernel::real::PI;
+const HALF_TURN: Real = bidir_sdk::real::PI;
 
 /// The unit direction with this cosine and azimuth.
 fn direction(cos: Real, phi: Real) -> Vec3 {

@@ -2,7 +2,7 @@
 
 use std::{boxed::Box, string::String, vec, vec::Vec};
 
-use bidir_kernel::{Emitted, EndDensity, Light, Point, Profile, Real, Spectrum, Vec2, Vec3, math::dot, real::ONE_MINUS_EPSILON};
+use bidir_sdk::{Emitted, EndDensity, Light, Point, Profile, Real, Spectrum, Vec2, Vec3, math::dot, real::ONE_MINUS_EPSILON};
 
 use super::{
     chi_square::{Histogram, masses},
@@ -55,7 +55,7 @@ fn plain() -> Vec<(String, Box<dyn Profile>)> {
         ("constant".into(), Box::new(Constant { radiance: WARM })),
     ];
     // Cones that end where the bins of the χ² test do.
-    let cone = bidir_kernel::math::acos;
+    let cone = bidir_sdk::math::acos;
     let half_turn = super::HALF_TURN;
     for (cutoff, beam_width) in
         [(cone(0.875), 0.3), (cone(0.875), 1.0), (cone(0.5), 0.0), (cone(-0.75), 1.0), (half_turn, 1.0), (half_turn, half_turn)]

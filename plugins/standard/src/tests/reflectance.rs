@@ -1,6 +1,6 @@
 //! Energy: Fresnel's equations and albedos.
 
-use bidir_kernel::{Bsdf, Carried, Real, Spectrum};
+use bidir_sdk::{Bsdf, Carried, Real, Spectrum};
 
 use super::{direction, directions, numbers, surfaces::all};
 use crate::{Conductor, Dielectric, Diffuse, Plastic, ThinDielectric, fresnel};
@@ -80,7 +80,7 @@ fn the_diffuse_reflectance_is_the_mean_of_the_reflectance() {
 }
 
 /// The mean weight, and its standard error.
-fn albedo(bsdf: &dyn Bsdf, wo: bidir_kernel::Vec3, samples: u64) -> (f64, f64) {
+fn albedo(bsdf: &dyn Bsdf, wo: bidir_sdk::Vec3, samples: u64) -> (f64, f64) {
     let (mut sum, mut squares) = (0.0, 0.0);
     for index in 0..samples {
         let weight = bsdf.sample(wo, numbers(5, index), Carried::Importance).map_or(0.0, |s| f64::from(s.weight.max()));

@@ -1,6 +1,6 @@
 //! What binds a surface's samples, densities and values together.
 
-use bidir_kernel::{Bsdf, Carried, Lobe, Made, Real, Scattered, Spectrum, Vec3, math::dot, real::ONE_MINUS_EPSILON};
+use bidir_sdk::{Bsdf, Carried, Lobe, Made, Real, Scattered, Spectrum, Vec3, math::dot, real::ONE_MINUS_EPSILON};
 
 use super::{
     chi_square::{Histogram, masses},

@@ -2,7 +2,7 @@
 
 use std::{boxed::Box, format, string::String, vec::Vec};
 
-use bidir_kernel::{Bsdf, Real, Spectrum};
+use bidir_sdk::{Bsdf, Real, Spectrum};
 
 use crate::*;
 
