@@ -83,12 +83,12 @@ EXPORT("bsdf_eval_n") void bsdf_eval_n(EvalRecord *records, int n, const Params 
 // Sine and cosine of x in [-π/4, π/4]: Taylor series in f64, good to the last digit of an f32.
 static double small_sin(double x) {
     const double s = x * x;
-    return x * (1.0 + s * (-1.0 / 6 + s * (1.0 / 120 + s * (-1.0 / 5040 + s * (1.0 / 362880)))));
+    return x * (1.0 + s * (-1.0 / 6 + s * (1.0 / 120 + s * (-1.0 / 5040 + s * (1.0 / 362880 + s * (-1.0 / 39916800))))));
 }
 
 static double small_cos(double x) {
     const double s = x * x;
-    return 1.0 + s * (-1.0 / 2 + s * (1.0 / 24 + s * (-1.0 / 720 + s * (1.0 / 40320 + s * (-1.0 / 3628800)))));
+    return 1.0 + s * (-1.0 / 2 + s * (1.0 / 24 + s * (-1.0 / 720 + s * (1.0 / 40320 + s * (-1.0 / 3628800 + s * (1.0 / 479001600))))));
 }
 
 // Cosine-weighted on the hemisphere about z (Shirley & Chiu 1997).

@@ -68,8 +68,8 @@ void bsdf_eval(EvalOut *out, const Params *p, int carried, float ox, float oy, f
 static void circle(float u, float *cosine, float *sine) {
     const int quarter = (int)(4.0f * u + 0.5f);
     const double x = 2.0 * 3.14159265358979324 * (u - 0.25 * quarter), s = x * x;
-    const float c = 1.0 + s * (-1.0 / 2 + s * (1.0 / 24 + s * (-1.0 / 720 + s * (1.0 / 40320))));
-    const float n = x * (1.0 + s * (-1.0 / 6 + s * (1.0 / 120 + s * (-1.0 / 5040 + s * (1.0 / 362880)))));
+    const float c = 1.0 + s * (-1.0 / 2 + s * (1.0 / 24 + s * (-1.0 / 720 + s * (1.0 / 40320 + s * (-1.0 / 3628800)))));
+    const float n = x * (1.0 + s * (-1.0 / 6 + s * (1.0 / 120 + s * (-1.0 / 5040 + s * (1.0 / 362880 + s * (-1.0 / 39916800))))));
     *cosine = quarter & 1 ? (quarter & 2 ? n : -n) : (quarter & 2 ? -c : c);
     *sine = quarter & 1 ? (quarter & 2 ? -c : c) : (quarter & 2 ? -n : n);
 }

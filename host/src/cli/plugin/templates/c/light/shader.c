@@ -33,14 +33,14 @@ EXPORT("bidir_scratch") void *bidir_scratch(unsigned bytes) {
 // Sine of x from -pi/4 to pi/4, by its Taylor series.
 static float small_sin(double x) {
     const double s = x * x;
-    return x * (1.0 + s * (-1.0 / 6 + s * (1.0 / 120 + s * (-1.0 / 5040 + s * (1.0 / 362880)))));
+    return x * (1.0 + s * (-1.0 / 6 + s * (1.0 / 120 + s * (-1.0 / 5040 + s * (1.0 / 362880 + s * (-1.0 / 39916800))))));
 }
 
 // Cosine and sine of the angle u turns round: Taylor series about the middle of the nearest quarter.
 static void circle(float u, float *cosine, float *sine) {
     const int quarter = (int)(4.0f * u + 0.5f);
     const double x = 2.0 * 3.14159265358979324 * (u - 0.25 * quarter), s = x * x;
-    const float c = 1.0 + s * (-1.0 / 2 + s * (1.0 / 24 + s * (-1.0 / 720 + s * (1.0 / 40320)))), n = small_sin(x);
+    const float c = 1.0 + s * (-1.0 / 2 + s * (1.0 / 24 + s * (-1.0 / 720 + s * (1.0 / 40320 + s * (-1.0 / 3628800))))), n = small_sin(x);
     *cosine = quarter & 1 ? (quarter & 2 ? n : -n) : (quarter & 2 ? -c : c);
     *sine = quarter & 1 ? (quarter & 2 ? -c : c) : (quarter & 2 ? -n : n);
 }
