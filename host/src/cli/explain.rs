@@ -137,8 +137,8 @@ mod tests {
                 ("diffuse", 1, 0, &["diffuse_reflection"]),
             ]
         );
-        let lights: Vec<_> = contents.lights.iter().map(|light| (light.kind, light.count, light.share)).collect();
-        assert_eq!((lights, contents.black_lights), (vec![("point", 1, 1.0)], 1));
+        let lights: Vec<_> = contents.lights.iter().map(|light| (light.kind.clone(), light.count, light.share)).collect();
+        assert_eq!((lights, contents.black_lights), (vec![("point".to_owned(), 1, 1.0)], 1));
         assert!((contents.lights[0].power - 12.0 * std::f64::consts::PI).abs() < 1e-4);
         let present: Vec<_> = effects.list().into_iter().filter_map(|(name, present)| present.then_some(name)).collect();
         assert_eq!(

@@ -151,7 +151,8 @@ fn spot(of: &Properties) -> Result<EmitterKind> {
         return Err(of.error("to_world", "skews or squashes the spot", "only move, turn and mirror it"));
     }
     let cutoff_angle = of.float("cutoff_angle")?.unwrap_or(20.0);
-    let beam_width = of.float("beam_width")?.unwrap_or(cutoff_angle * 0.75);
+    // In f32, as a plugin would.
+    let beam_width = of.float("beam_width")?.unwrap_or_else(|| f64::from(0.75 * cutoff_angle as f32));
     if !(cutoff_angle > 0.0 && cutoff_angle <= 180.0) {
         return Err(of.error("cutoff_angle", format!("is {cutoff_angle}"), "it must lie above 0 and not above 180 degrees"));
     }

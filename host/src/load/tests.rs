@@ -6,7 +6,10 @@ use bidir_kernel::Spectrum;
 use glam::DVec3;
 
 use super::*;
-use crate::scene::description::{Filter, Geometry, Material, SensorKind, ShapeLight, Texture, Wrap};
+use crate::{
+    plugin::Library,
+    scene::description::{EmitterKind, Filter, Geometry, Material, SensorKind, ShapeLight, Texture, Wrap},
+};
 
 const SENSOR: &str = "<sensor type=\"perspective\"/>";
 
