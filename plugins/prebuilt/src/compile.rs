@@ -16,9 +16,9 @@ pub fn compile(root: &Path, folder: &Path, module: &Module) -> Result<()> {
     let out = folder.join(format!("{}.wasm", module.name));
     match &module.recipe {
         Recipe::Library { package, library } => cargo(root, package, &["--lib"], &format!("{library}.wasm"), &out)?,
-        Recipe::Example { package } => {
+        Recipe::Example { package, features } => {
             let file = format!("examples/{}.wasm", module.name);
-            cargo(root, package, &["--example", &module.name], &file, &out)?;
+            cargo(root, package, &["--example", &module.name, "--features", features], &file, &out)?;
         }
         Recipe::Script => run(Command::new("sh").arg(root.join(&module.folder).join("build.sh")).arg(&out), &module.name)?,
     }

@@ -53,6 +53,8 @@ pub enum Recipe {
     Example {
         /// The package.
         package: String,
+        /// The features that the example asks for, separated by commas.
+        features: String,
     },
     /// `build.sh` in the folder, which is told where to write.
     Script,
@@ -122,6 +124,8 @@ struct Target {
     kind: Vec<String>,
     crate_types: Vec<String>,
     src_path: PathBuf,
+    #[serde(default, rename = "required-features")]
+    required_features: Vec<String>,
 }
 
 #[derive(Deserialize)]
@@ -159,7 +163,8 @@ impl Workspace {
         self.add_sources(package, &mut sources);
         let (name, recipe) = if target.kind.iter().any(|kind| kind == "example") {
             sources.push(target.src_path.clone());
-            (target.name.clone(), Recipe::Example { package: package.name.clone() })
+            let features = target.required_features.join(",");
+            (target.name.clone(), Recipe::Example { package: package.name.clone(), features })
         } else {
             // The twin of a module in another language.
             let twin = if folder.ends_with("/rust") { "-rust" } else { "" };
