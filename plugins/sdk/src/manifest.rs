@@ -10,7 +10,7 @@ use crate::{
     parameter::Value,
 };
 
-/// A manifest; [`bsdf!`](crate::bsdf) and [`light!`](crate::light) make one and write it as JSON.
+/// A manifest; [`bsdf!`](crate::bsdf!) and [`light!`](crate::light!) make one and write it as JSON.
 #[derive(Clone, Copy, Debug)]
 pub struct Manifest {
     /// A label; the module's file decides the type.
