@@ -4,6 +4,7 @@ use std::sync::atomic::AtomicBool;
 
 use bidir::{
     film::{Exposure, Film, Store},
+    plugin::Strictness,
     render,
     scene::view::View,
 };
@@ -58,7 +59,7 @@ fn long_paths_bring_all_their_light() {
 /// The kernel with storage for `stored` light vertices.
 fn with_storage(subject: &Subject, strategy: &Strategy, stored: usize, samples: u32, seed: u64) -> f64 {
     let film = Film::new(&subject.description.film).expect("a film");
-    let view = View::new(&subject.scene);
+    let view = View::new(&subject.scene, Strictness::Strict);
     let mut store: Vec<_> = (0..stored).map(|_| None).collect();
     while let Some(mut buffer) = film.claim(samples) {
         let unit = buffer.unit();

@@ -3,6 +3,7 @@
 use bidir::{
     film::Film,
     image::Image,
+    plugin::Strictness,
     render::{self, Job, Numbers, Target},
 };
 use bidir_kernel::{Heuristic, Strategy, Techniques};
@@ -79,7 +80,7 @@ fn any_division_into_passes_makes_the_same_bits() {
         use bidir::film::{Exposure, Store};
         use bidir::scene::view::View;
         use bidir_kernel::{Sampler, Vec2, Walk, sample, sampler::Independent};
-        let view = View::new(&subject.scene);
+        let view = View::new(&subject.scene, Strictness::Strict);
         let mut store: Vec<_> = (0..4).map(|_| None).collect();
         for &end in ends {
             while let Some(mut buffer) = film.claim(end) {

@@ -5,6 +5,7 @@ use std::{path::PathBuf, sync::atomic::AtomicBool};
 use bidir::{
     film::{Film, Pyramid},
     image::{Image, write},
+    plugin::Strictness,
     render::{self, Job, Numbers, Target},
     scene::{Scene, description::Description},
 };
@@ -59,6 +60,7 @@ impl Subject {
             threads: 1,
             target: Target::Samples(samples),
             width: self.description.film.width,
+            strictness: Strictness::Strict,
         }
     }
 

@@ -10,6 +10,7 @@ use bidir::{
     compare,
     image::{Image, read},
     load,
+    plugin::Library,
     scene::Scene,
 };
 use bidir_kernel::{Heuristic, Techniques};
@@ -47,7 +48,7 @@ struct Reference {
 fn matches(reference: &Reference, estimators: &[(&str, Techniques, u32)]) {
     let name = reference.name;
     let defines = [("res".to_owned(), "128".to_owned())];
-    let description = load::load(&folder(name).join("scene.xml"), &defines).expect("a scene").description;
+    let description = load::load(&folder(name).join("scene.xml"), &defines, &Library::default()).expect("a scene").description;
     let subject = Subject { scene: Scene::new(&description).expect("a scene"), description };
     let halves = Pictures { batches: halves(name).to_vec() };
     let whole = halves.whole();

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use bidir::{load, scene::Scene};
+use bidir::{load, plugin::Library, scene::Scene};
 
 use crate::pictures::Subject;
 
@@ -14,7 +14,7 @@ pub fn read(content: &str) -> Subject {
 /// Reads a scene whose files are in `folder`.
 pub fn read_beside(content: &str, folder: Option<&Path>) -> Subject {
     let text = format!("<scene version=\"3.0.0\">{content}</scene>");
-    let description = load::load_str(&text, Path::new("test.xml"), folder, &[]).expect("a good scene").description;
+    let description = load::load_str(&text, Path::new("test.xml"), folder, &[], &Library::default()).expect("a good scene").description;
     let scene = Scene::new(&description).expect("a scene");
     Subject { description, scene }
 }

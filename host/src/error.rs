@@ -36,22 +36,46 @@ pub struct Error {
     pub thing: String,
     /// What to do; may be empty.
     pub remedy: String,
+    /// Who is to blame.
+    pub blame: Blame,
+}
+
+/// Who is to blame for an error.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Blame {
+    /// What was given: a file, a value, a name.
+    #[default]
+    Input,
+    /// A plugin that ran and broke off.
+    Plugin,
 }
 
 impl Error {
     /// An error without a place.
     pub fn new(thing: impl Into<String>, remedy: impl Into<String>) -> Self {
-        Self { place: None, thing: thing.into(), remedy: remedy.into() }
+        Self { place: None, thing: thing.into(), remedy: remedy.into(), blame: Blame::Input }
     }
 
     /// An error somewhere in a file.
     pub fn in_file(file: &Path, thing: impl Into<String>, remedy: impl Into<String>) -> Self {
-        Self { place: Some(Place { file: file.to_owned(), position: None }), thing: thing.into(), remedy: remedy.into() }
+        Self {
+            place: Some(Place { file: file.to_owned(), position: None }),
+            thing: thing.into(),
+            remedy: remedy.into(),
+            blame: Blame::Input,
+        }
     }
 
     /// An error at a place.
     pub fn at(place: &Place, thing: impl Into<String>, remedy: impl Into<String>) -> Self {
-        Self { place: Some(place.clone()), thing: thing.into(), remedy: remedy.into() }
+        Self { place: Some(place.clone()), thing: thing.into(), remedy: remedy.into(), blame: Blame::Input }
+    }
+}
+
+impl Error {
+    /// A plugin broke off.
+    pub fn plugin(thing: impl Into<String>, remedy: impl Into<String>) -> Self {
+        Self { blame: Blame::Plugin, ..Self::new(thing, remedy) }
     }
 }
 

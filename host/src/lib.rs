@@ -5,22 +5,34 @@
 
 pub mod error;
 
+#[cfg(feature = "renderer")]
 pub mod partial;
 
+#[cfg(feature = "renderer")]
 pub mod image;
 
+#[cfg(feature = "renderer")]
 pub mod rays;
 
+pub mod plugin;
+
+#[cfg(feature = "renderer")]
 pub mod scene;
 
+#[cfg(feature = "renderer")]
 pub mod load;
 
+#[cfg(feature = "renderer")]
 pub mod plan;
 
+#[cfg(feature = "renderer")]
 pub mod film;
 
+#[cfg(feature = "renderer")]
 pub mod render;
 
+#[cfg(feature = "renderer")]
 pub mod compare;
 
+#[cfg(feature = "renderer")]
 pub mod cli;

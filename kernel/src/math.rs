@@ -1,7 +1,7 @@
 //! Every function whose result decides a pixel, with the same bits on every machine.
 //!
-//! What IEEE 754 makes exact (square root, floor, absolute value, minimum, maximum) comes from std where it is there;
-//! every transcendental function comes from the crate `libm`, natively and in wasm alike. Nothing here fuses
+//! What IEEE 754 makes exact (square root, floor, absolute value) comes from std where it is there; minimum and maximum are
+//! comparisons, since std leaves the sign of a zero open and calls a function for them in WebAssembly; every transcendental function comes from the crate `libm`, natively and in wasm alike. Nothing here fuses
 //! a multiplication with an addition.
 
 use crate::real::{self, Real, Vec2, Vec3};
@@ -15,10 +15,22 @@ pub fn sqrt(x: Real) -> Real {
     return libm::Libm::<Real>::sqrt(x);
 }
 
+/// The larger; `y` where either is NaN.
+#[inline(always)]
+pub fn max(x: Real, y: Real) -> Real {
+    if x > y { x } else { y }
+}
+
+/// The smaller; `y` where either is NaN.
+#[inline(always)]
+pub fn min(x: Real, y: Real) -> Real {
+    if x < y { x } else { y }
+}
+
 /// √x with everything below 0 taken as 0: for 1 − cos², which rounding pushes under.
 #[inline(always)]
 pub fn safe_sqrt(x: Real) -> Real {
-    sqrt(x.max(0.0))
+    sqrt(max(x, 0.0))
 }
 
 /// The largest whole number not above x.

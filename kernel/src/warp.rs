@@ -1,7 +1,7 @@
 //! Maps from the unit square to the shapes that directions and points are sampled from.
 
 use crate::{
-    math::{safe_sqrt, sin_cos, sqr, sqrt, vec2, vec3},
+    math::{max, safe_sqrt, sin_cos, sqr, sqrt, vec2, vec3},
     real::{INV_PI, PI, Real, Vec2, Vec3},
 };
 
@@ -22,20 +22,20 @@ pub fn disk(u: [Real; 2]) -> Vec2 {
 pub fn cosine_hemisphere(u: [Real; 2]) -> Vec3 {
     let d = disk(u);
     // z from 1 − r² loses all its digits at the rim; the floor keeps the direction, and its density, off 0.
-    vec3(d.x, d.y, safe_sqrt(1.0 - d.x * d.x - d.y * d.y).max(1e-7))
+    vec3(d.x, d.y, max(safe_sqrt(1.0 - d.x * d.x - d.y * d.y), 1e-7))
 }
 
 /// The density of [`cosine_hemisphere`] at a direction with this cosine; 0 below.
 #[inline(always)]
 pub fn cosine_hemisphere_pdf(cos: Real) -> Real {
-    cos.max(0.0) * INV_PI
+    max(cos, 0.0) * INV_PI
 }
 
 /// Uniform on the unit sphere. Density 1/4π.
 #[inline]
 pub fn sphere(u: [Real; 2]) -> Vec3 {
     let z = 1.0 - 2.0 * u[0];
-    let r = 2.0 * sqrt((u[0] * (1.0 - u[0])).max(0.0));
+    let r = 2.0 * safe_sqrt(u[0] * (1.0 - u[0]));
     let (sin, cos) = sin_cos(2.0 * PI * u[1]);
     vec3(r * cos, r * sin, z)
 }

@@ -37,6 +37,12 @@ pub struct SceneArguments {
     /// The longest path, in segments, whatever the scene says; -1 is unlimited
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(i64).range(-1..i64::from(u32::MAX)))]
     pub max_depth: Option<i64>,
+    /// A folder of plugins, before those that BIDIR_PLUGINS names; may be given again
+    #[arg(long = "plugins", value_name = "DIR")]
+    pub plugins: Vec<PathBuf>,
+    /// End the render at a plugin's first bad answer, instead of leaving such answers out
+    #[arg(long)]
+    pub strict: bool,
 }
 
 /// `bidir render`

@@ -105,11 +105,11 @@ mod tests {
     use std::path::Path;
 
     use super::*;
-    use crate::load::load_str;
+    use crate::{load::load_str, plugin::Library};
 
     fn report(content: &str) -> Report {
         let text = format!("<scene version=\"3.0.0\"><sensor type=\"perspective\"/>{content}</scene>");
-        let description = load_str(&text, Path::new("s.xml"), None, &[]).unwrap().description;
+        let description = load_str(&text, Path::new("s.xml"), None, &[], &Library::default()).unwrap().description;
         let scene = Scene::new(&description).unwrap();
         Report::new("s.xml".into(), &description, &scene)
     }

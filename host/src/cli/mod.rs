@@ -13,7 +13,7 @@ use std::process::ExitCode;
 
 use clap::{Parser, error::ErrorKind};
 
-use crate::error::Error;
+use crate::error::{Blame, Error};
 use arguments::{Arguments, Command};
 
 /// How a command ended.
@@ -47,7 +47,10 @@ pub fn main() -> ExitCode {
         Ok(Outcome::Interrupted) => ExitCode::from(130),
         Err(error) => {
             complain(&error);
-            ExitCode::from(1)
+            ExitCode::from(match error.blame {
+                Blame::Input => 1,
+                Blame::Plugin => 3,
+            })
         }
     }
 }

@@ -18,6 +18,7 @@ use crate::{
     image::write::{self, Layers},
     load,
     plan::Plan,
+    plugin::{Library, Strictness},
     render::{self, Job, Status, Target},
     scene::{Scene, description::Description},
 };
@@ -27,9 +28,13 @@ const WELCOME: &str = include_str!("../../../examples/scenes/welcome.xml");
 
 /// Reads a scene, or the one that comes with the program, and says on standard error what the user should know of it.
 pub(super) fn read(scene: Option<&Path>, from: &SceneArguments) -> Result<Description> {
+    if let Some(folder) = from.plugins.iter().find(|folder| !folder.is_dir()) {
+        return Err(Error::in_file(folder, "there is no such folder", "name a folder of plugins"));
+    }
+    let library = Library::with_environment(from.plugins.clone());
     let loaded = match scene {
-        Some(path) => load::load(path, &from.defines)?,
-        None => load::load_str(WELCOME, Path::new("welcome.xml"), None, &from.defines)?,
+        Some(path) => load::load(path, &from.defines, &library)?,
+        None => load::load_str(WELCOME, Path::new("welcome.xml"), None, &from.defines, &library)?,
     };
     for warning in &loaded.warnings {
         eprintln!("warning: {warning}");
@@ -39,6 +44,26 @@ pub(super) fn read(scene: Option<&Path>, from: &SceneArguments) -> Result<Descri
         description.integrator.max_depth = u32::try_from(depth).ok();
     }
     Ok(description)
+}
+
+/// What a bad answer of a plugin does.
+pub(super) fn strictness(from: &SceneArguments) -> Strictness {
+    if from.strict { Strictness::Strict } else { Strictness::Lenient }
+}
+
+/// Says what plugins did that was not right, and how the command ended.
+pub(super) fn conclude(status: &Status) -> Result<Outcome> {
+    for entry in &status.quarantine.0 {
+        eprintln!("warning: {entry}");
+    }
+    if let Some(fault) = &status.fault {
+        let error = Error::from(fault.clone());
+        return Err(Error { thing: format!("{}; what was rendered before is saved", error.thing), ..error });
+    }
+    if status.failed {
+        return Err(Error::new("a render thread broke down; what was rendered before is saved", "this is a bug; please report it"));
+    }
+    Ok(if status.interrupted { Outcome::Interrupted } else { Outcome::Done })
 }
 
 /// As many threads as asked for, or as the machine has.
@@ -91,6 +116,7 @@ pub(super) fn run(arguments: &Render) -> Result<Outcome> {
         threads: thread_count(arguments.threads),
         target,
         width: description.film.width,
+        strictness: strictness(&arguments.from),
     };
     let light_walks = if job.strategy.techniques.light_walk() { 1.0 } else { 0.0 };
     let mut progress = progress(target, arguments.quiet);
@@ -111,13 +137,10 @@ pub(super) fn run(arguments: &Render) -> Result<Outcome> {
         statistics(arguments, &description, &scene, &plan, &job, &status, seconds, film.refused(), film.noise(light_walks)).write(path)?;
     }
     if !arguments.quiet {
-        let Status { samples, elapsed, .. } = status;
+        let Status { samples, elapsed, .. } = &status;
         println!("{samples} samples per pixel in {:.1} s: {}", elapsed.as_secs_f64(), output.display());
     }
-    if status.failed {
-        return Err(Error::new("a render thread broke down; what was rendered before is saved", "this is a bug; please report it"));
-    }
-    Ok(if status.interrupted { Outcome::Interrupted } else { Outcome::Done })
+    conclude(&status)
 }
 
 fn target(arguments: &Render, description: &Description) -> Target {
@@ -173,7 +196,7 @@ fn statistics(
         light_paths: if job.strategy.techniques.light_walk() { camera_paths } else { 0 },
         rays: status.rays,
         refused,
-        quarantined: 0,
+        quarantined: status.quarantine.count(),
         estimated_error: noise.map(|noise| noise.relmse),
         integrator: if arguments.plan.is_some() { "plan" } else { arguments.integrator.name() },
         plan: *plan,

@@ -12,7 +12,7 @@ use crate::{
         arguments::Techniques,
         interrupt,
         progress::{Goal, Progress, Verbosity},
-        render::{read, thread_count},
+        render::{conclude, read, strictness, thread_count},
     },
     error::{Error, Result},
     film::Pyramid,
@@ -43,6 +43,7 @@ pub(super) fn run(arguments: &Techniques) -> Result<Outcome> {
         threads: thread_count(arguments.threads),
         target: Target::Samples(arguments.spp),
         width: description.film.width,
+        strictness: strictness(&arguments.from),
     };
     let status = expose(&scene, &pyramid, &job, arguments);
 
@@ -71,7 +72,7 @@ pub(super) fn run(arguments: &Techniques) -> Result<Outcome> {
         let (seconds, count) = (status.elapsed.as_secs_f64(), there.len());
         println!("{count} techniques, {} samples per pixel in {seconds:.1} s: {}", status.samples, picture.display());
     }
-    Ok(if status.interrupted { Outcome::Interrupted } else { Outcome::Done })
+    conclude(&status)
 }
 
 /// The longest paths to show. No path up to there depends on a longer one, so those are not made at all.
@@ -111,7 +112,12 @@ mod tests {
 
     use super::*;
     use crate::render::Numbers;
-    use crate::{film::Film, image::Image, load::load_str};
+    use crate::{
+        film::Film,
+        image::Image,
+        load::load_str,
+        plugin::{Library, Strictness},
+    };
 
     /// A small room: a lamp, a mirror, something rough, and a lens.
     const ROOM: &str = r#"<scene version="3.0.0">
@@ -131,14 +137,22 @@ mod tests {
         </scene>"#;
 
     fn room() -> (Description, Scene) {
-        let mut description = load_str(ROOM, Path::new("room.xml"), None, &[]).unwrap().description;
+        let mut description = load_str(ROOM, Path::new("room.xml"), None, &[], &Library::default()).unwrap().description;
         assert_eq!(limit(&mut description, 4), 4);
         let scene = Scene::new(&description).unwrap();
         (description, scene)
     }
 
     fn job(strategy: Strategy) -> Job {
-        Job { strategy, seed: 3, numbers: Numbers::Sobol, threads: 2, target: Target::Samples(8), width: 20 }
+        Job {
+            strategy,
+            seed: 3,
+            numbers: Numbers::Sobol,
+            threads: 2,
+            target: Target::Samples(8),
+            width: 20,
+            strictness: Strictness::Lenient,
+        }
     }
 
     fn pyramid(description: &Description, scene: &Scene, job: &Job) -> Pyramid {
@@ -199,7 +213,7 @@ mod tests {
                 text = text.replace("<emitter type=\"area\"><rgb name=\"radiance\" value=\"5\"/></emitter>", "");
                 text = text.replace("</scene>", "<emitter type=\"point\"><point name=\"position\" value=\"0, 1, 1\"/></emitter></scene>");
             }
-            let mut description = load_str(&text, Path::new("room.xml"), None, &[]).unwrap().description;
+            let mut description = load_str(&text, Path::new("room.xml"), None, &[], &Library::default()).unwrap().description;
             limit(&mut description, 4);
             let scene = Scene::new(&description).unwrap();
             let job = Job { target: Target::Samples(64), ..job(Named::Bdpt.plan().strategy(&description.integrator)) };

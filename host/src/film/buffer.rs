@@ -18,6 +18,9 @@ pub trait Exposure: bidir_kernel::Film {
 
     /// All contributions of this sample have come, those of its light walks too.
     fn end(&mut self);
+
+    /// Forgets all samples of the unit; committed, it adds nothing.
+    fn clear(&mut self);
 }
 
 /// A light walk's arrival.
@@ -126,6 +129,10 @@ impl Exposure for TileBuffer {
                 *sum = [sum[0] + h * r, sum[1] + h * g, sum[2] + h * b, sum[3] + h];
             }
         }
+    }
+
+    fn clear(&mut self) {
+        self.reset(self.unit);
     }
 }
 

@@ -188,6 +188,12 @@ impl Exposure for PyramidBuffer {
     fn end(&mut self) {
         self.samples.push(self.pixel);
     }
+
+    fn clear(&mut self) {
+        self.samples.clear();
+        self.arrivals.clear();
+        self.refused = 0;
+    }
 }
 
 impl bidir_kernel::Film for PyramidBuffer {

@@ -1,11 +1,11 @@
 //! `<bsdf>`: what surfaces are made of.
 
-use bidir_kernel::Spectrum;
+use bidir_kernel::{Lobe, Spectrum};
 
 use super::{
     catalog,
     context::Context,
-    ior,
+    ior, plugin,
     properties::{Properties, Value, line},
     suggest::{did_you_mean, list},
     texture::{Range, parameter},
@@ -44,8 +44,13 @@ pub(super) fn material(context: &mut Context, element: &Element) -> Result<Mater
     }
     context.material_ids.insert(element.serial, None);
     let properties = Properties::read(element, &context.ids)?;
-    catalog::check("bsdf", properties.kind(), &element.place)?;
-    let material = read(context, &properties)?;
+    let material = match plugin::find(context, "bsdf", properties.kind(), &element.place)? {
+        Some(module) => Material::Plugin(plugin::shader(context, &properties, module)?),
+        None => {
+            catalog::check("bsdf", properties.kind(), &element.place)?;
+            read(context, &properties)?
+        }
+    };
     properties.finish()?;
     let id = add(context, material);
     context.material_ids.insert(element.serial, Some(id));
@@ -58,7 +63,7 @@ fn add(context: &mut Context, material: Material) -> MaterialId {
 }
 
 fn read(context: &mut Context, of: &Properties) -> Result<Material> {
-    let mut fraction = |name, default| parameter(context, of, name, default, Range::Fraction);
+    let mut fraction = |name, default| parameter(context, of, name, default, Range::FRACTION);
     Ok(match of.kind() {
         "diffuse" => Material::Diffuse { reflectance: fraction("reflectance", 0.5)? },
         "conductor" => {
@@ -108,10 +113,13 @@ fn twosided(context: &mut Context, of: &Properties) -> Result<Material> {
     let mut ids = Vec::with_capacity(2);
     for side in &sides {
         let id = material(context, side)?;
-        let transmits = matches!(
-            context.materials[id.0 as usize],
-            Material::Dielectric { .. } | Material::ThinDielectric { .. } | Material::RoughDielectric { .. } | Material::Null
-        );
+        let transmits = match &context.materials[id.0 as usize] {
+            Material::Plugin(shader) => shader.module.manifest().lobes().intersects(Lobe::TRANSMISSION),
+            other => matches!(
+                other,
+                Material::Dielectric { .. } | Material::ThinDielectric { .. } | Material::RoughDielectric { .. } | Material::Null
+            ),
+        };
         if transmits {
             let kind = side.attribute("type").unwrap_or("");
             return Err(Error::at(&side.place, format!("twosided holds {kind}, which lets light through"), "use it without twosided"));
@@ -142,12 +150,13 @@ fn eta(of: &Properties, inside: &str) -> Result<f32> {
             of.error(name, format!("is \"{named}\""), remedy)
         })
     };
-    let eta = index("int_ior", inside)? / index("ext_ior", "air")?;
+    // In f32, as a plugin would that is given both.
+    let eta = index("int_ior", inside)? as f32 / index("ext_ior", "air")? as f32;
     if !(1e-3..=1e3).contains(&eta) {
         let thing = format!("int_ior / ext_ior of {} is {eta:e}", of.label());
         return Err(Error::at(of.place(), thing, "their ratio must lie within 0.001 … 1000"));
     }
-    Ok(eta as f32)
+    Ok(eta)
 }
 
 /// η and k.
@@ -181,7 +190,7 @@ fn roughness(context: &mut Context, of: &Properties) -> Result<Roughness> {
     let distribution = of.choice("distribution", &[("beckmann", Distribution::Beckmann), ("ggx", Distribution::Ggx)])?;
     of.boolean("sample_visible")?; // changes how directions are found, not what the image is
     let both = (of.has("alpha"), of.has("alpha_u"), of.has("alpha_v"));
-    let mut alpha = |name| parameter(context, of, name, 0.1, Range::NotNegative);
+    let mut alpha = |name| parameter(context, of, name, 0.1, Range::NOT_NEGATIVE);
     let (alpha_u, alpha_v) = match both {
         (true, true, _) | (true, _, true) => {
             return Err(of.error("alpha", "is given together with alpha_u or alpha_v", "keep either alpha, or both of the others"));

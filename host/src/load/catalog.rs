@@ -72,7 +72,8 @@ pub(super) fn check(tag: &str, kind: &str, place: &Place) -> Result<()> {
         return Err(Error::at(place, format!("{tag} type \"{kind}\" is not supported"), *instead));
     }
     let all: Vec<&str> = entries().filter(|e| e.tag == tag && e.instead.is_none()).map(|e| e.name).collect();
-    let remedy = format!("{}there are {}", did_you_mean(kind, &all), list(known));
+    let plugin = if matches!(tag, "bsdf" | "emitter") { super::plugin::hint(kind) } else { String::new() };
+    let remedy = format!("{}there are {}{plugin}", did_you_mean(kind, &all), list(known));
     Err(Error::at(place, format!("{tag} type \"{kind}\" is unknown"), remedy))
 }
 

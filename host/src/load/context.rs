@@ -9,12 +9,14 @@ use std::{
 use super::{ids::Ids, properties::line, xml, xml::Element};
 use crate::{
     error::{Error, Place, Result},
+    plugin::Library,
     scene::description::{Bitmap, EnvironmentImage, Material, MaterialId, Mesh},
 };
 
 /// A scene half read.
 pub(super) struct Context<'s> {
     pub(super) ids: Ids<'s>,
+    pub(super) library: &'s Library,
     pub(super) warnings: Vec<String>,
     pub(super) materials: Vec<Material>,
     /// By the serial of the element; `None` while the material is being read.
@@ -31,9 +33,10 @@ pub(super) struct Context<'s> {
 }
 
 impl<'s> Context<'s> {
-    pub(super) fn new(ids: Ids<'s>, base: Option<&Path>, search: &[PathBuf]) -> Self {
+    pub(super) fn new(ids: Ids<'s>, library: &'s Library, base: Option<&Path>, search: &[PathBuf]) -> Self {
         Self {
             ids,
+            library,
             warnings: Vec::new(),
             materials: Vec::new(),
             material_ids: HashMap::new(),
@@ -49,13 +52,13 @@ impl<'s> Context<'s> {
 
     /// The file that `filename` means: beside the file that names it, beside the scene, or where `<path>` says.
     pub(super) fn file(&self, filename: &str, place: &Place) -> Result<PathBuf> {
-        let Some(base) = &self.base else { return Err(xml::no_files(place)) };
+        if self.base.is_none() {
+            return Err(xml::no_files(place));
+        }
         if filename.trim().is_empty() {
             return Err(Error::at(place, "the file name is empty", "name a file"));
         }
-        let beside = place.file.parent().unwrap_or(Path::new(""));
-        let folders = [beside, base.as_path()].into_iter().chain(self.search.iter().map(PathBuf::as_path));
-        let mut paths = folders.map(|folder| folder.join(filename));
+        let mut paths = self.folders(place).into_iter().map(|folder| folder.join(filename));
         let first = paths.next().unwrap_or_default();
         if first.exists() {
             return Ok(first);
@@ -63,6 +66,16 @@ impl<'s> Context<'s> {
         paths.find(|path| path.exists()).ok_or_else(|| {
             Error::at(place, format!("there is no file {}", first.display()), "check the name, or give its folder with <path value=\"…\"/>")
         })
+    }
+
+    /// Where files are that are named at `place`: beside the file that names them, beside the scene, or where `<path>` says. Nowhere,
+    /// if the scene may name no files.
+    pub(super) fn folders(&self, place: &Place) -> Vec<PathBuf> {
+        let Some(base) = &self.base else { return Vec::new() };
+        let beside = place.file.parent().unwrap_or(Path::new(""));
+        let mut folders = vec![beside.to_owned()];
+        folders.extend([base].into_iter().chain(&self.search).filter(|folder| *folder != beside).cloned());
+        folders
     }
 
     /// Keeps `warning` for the user.

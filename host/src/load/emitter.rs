@@ -8,7 +8,9 @@ use glam::{DAffine3, DVec3};
 use super::{
     catalog,
     context::Context,
+    plugin,
     properties::{Properties, Value},
+    suggest::list,
     texture::named_here,
     transform,
     xml::Element,
@@ -16,47 +18,118 @@ use super::{
 use crate::{
     error::{Error, Place, Result},
     image::read::{Encoding, read},
-    scene::description::{Emitter, EmitterKind, EnvironmentImage},
+    plugin::{EmitsFrom, Module},
+    scene::description::{Emitter, EmitterKind, EnvironmentImage, ShapeLight},
 };
 
-/// The radiance of a shape's light.
-pub(super) fn area(context: &mut Context, element: &Element, shape: &Place) -> Result<Spectrum> {
-    let radiance = unattached_area(context, element)?;
+/// The light of a shape.
+pub(super) fn area(context: &mut Context, element: &Element, shape: &Place) -> Result<ShapeLight> {
+    let of = Properties::read(element, &context.ids)?;
+    let light = match plugin::find(context, "emitter", of.kind(), &element.place)? {
+        Some(module) => {
+            check_seat(&of, &module, EmitsFrom::Area)?;
+            let light = ShapeLight::Plugin(plugin::shader(context, &of, module)?);
+            finish(of)?;
+            light
+        }
+        None => built_in_area(of, element)?,
+    };
     context.attach(element, shape)?;
-    Ok(radiance)
+    Ok(light)
 }
 
-/// The radiance of an area light, on a shape or not yet.
-pub(super) fn unattached_area(context: &Context, element: &Element) -> Result<Spectrum> {
-    let of = Properties::read(element, &context.ids)?;
+fn built_in_area(of: Properties, element: &Element) -> Result<ShapeLight> {
     catalog::check("emitter", of.kind(), &element.place)?;
     if of.kind() != "area" {
         let thing = format!("a {} emitter stands inside a shape", of.kind());
         return Err(Error::at(&element.place, thing, "only area lights are on shapes; move it out of the shape"));
     }
     let radiance = of.radiance("radiance")?;
-    of.pass_over(&["sampling_weight"]);
-    of.finish()?;
-    Ok(radiance)
+    finish(of)?;
+    Ok(ShapeLight::Area(radiance))
 }
 
-/// A light that is not on a shape.
-pub(super) fn emitter(context: &mut Context, element: &Element) -> Result<Emitter> {
+fn finish(of: Properties) -> Result<()> {
+    of.pass_over(&["sampling_weight"]);
+    of.finish()
+}
+
+/// A light that is not on a shape; `None` if it is one for shapes to refer to.
+pub(super) fn emitter(context: &mut Context, element: &Element) -> Result<Option<Emitter>> {
     let of = Properties::read(element, &context.ids)?;
-    catalog::check("emitter", of.kind(), &element.place)?;
-    let kind = match of.kind() {
-        "point" => point(&of)?,
-        "spot" => spot(&of)?,
-        "directional" => directional(&of)?,
+    let kind = match plugin::find(context, "emitter", of.kind(), &element.place)? {
+        Some(module) => free_plugin(context, &of, module)?,
+        None => {
+            if of.kind() == "area" {
+                built_in_area(of, element)?;
+                return Ok(None);
+            }
+            catalog::check("emitter", of.kind(), &element.place)?;
+            Some(built_in(context, &of)?)
+        }
+    };
+    finish(of)?;
+    Ok(kind.map(|kind| Emitter { kind, place: element.place.clone() }))
+}
+
+fn built_in(context: &mut Context, of: &Properties) -> Result<EmitterKind> {
+    Ok(match of.kind() {
+        "point" => point(of)?,
+        "spot" => spot(of)?,
+        "directional" => directional(of)?,
         "constant" => {
             of.pass_over(&["to_world"]);
             EmitterKind::Constant { radiance: of.radiance("radiance")? }
         }
-        _ => envmap(context, &of)?,
+        _ => envmap(context, of)?,
+    })
+}
+
+/// A module's light outside shapes: where its manifest, or `as`, says that it shines from.
+fn free_plugin(context: &mut Context, of: &Properties, module: Arc<Module>) -> Result<Option<EmitterKind>> {
+    let seats = &module.manifest().emits_from;
+    let free: Vec<EmitsFrom> = seats.iter().copied().filter(|seat| *seat != EmitsFrom::Area).collect();
+    let seat = match of.text("as")? {
+        Some(name) => {
+            let known: Vec<_> = free.iter().map(|seat| seat.name()).collect();
+            let named = free.iter().copied().find(|seat| seat.name() == name);
+            named.ok_or_else(|| of.error("as", format!("is \"{name}\""), format!("it can be {}", list(&known))))?
+        }
+        None => match free.as_slice() {
+            [] => EmitsFrom::Area,
+            [one] => *one,
+            _ => return Err(of.missing("as", "string")),
+        },
     };
-    of.pass_over(&["sampling_weight"]);
-    of.finish()?;
-    Ok(Emitter { kind, place: element.place.clone() })
+    if seat == EmitsFrom::Area {
+        // For shapes to refer to.
+        plugin::shader(context, of, module)?;
+        return Ok(None);
+    }
+    let to_world = match of.vector("position")? {
+        Some(_) if of.has("to_world") => return Err(of.error("to_world", "is given together with position", "keep one of them")),
+        Some(position) => DAffine3::from_translation(position),
+        None => of.transform("to_world")?,
+    };
+    if !transform::is_similar(&to_world) {
+        return Err(of.error("to_world", "skews or squashes the light", "only move, turn and mirror it"));
+    }
+    let shader = plugin::shader(context, of, module)?;
+    Ok(Some(match seat {
+        EmitsFrom::Environment => EmitterKind::PluginEnvironment { to_world, shader },
+        _ => EmitterKind::PluginPoint { to_world, shader },
+    }))
+}
+
+/// An error unless the module can shine from there.
+fn check_seat(of: &Properties, module: &Module, seat: EmitsFrom) -> Result<()> {
+    let seats = &module.manifest().emits_from;
+    if seats.contains(&seat) {
+        return Ok(());
+    }
+    let known: Vec<_> = seats.iter().map(|seat| seat.name()).collect();
+    let thing = format!("{} stands inside a shape, and shines from {}", of.label(), list(&known));
+    Err(Error::at(of.place(), thing, "move it out of the shape"))
 }
 
 fn point(of: &Properties) -> Result<EmitterKind> {

@@ -12,6 +12,7 @@ mod ids;
 mod integrator;
 mod ior;
 mod mesh;
+mod plugin;
 mod properties;
 mod sensor;
 mod shape;
@@ -26,7 +27,8 @@ use std::path::Path;
 use self::{context::Context, ids::Ids, properties::Properties};
 use crate::{
     error::{Error, Result},
-    scene::description::{Description, Emitter, EmitterKind, Integrator},
+    plugin::Library,
+    scene::description::{Description, Emitter, Integrator},
 };
 
 /// A scene, and what the user should know about it.
@@ -38,24 +40,25 @@ pub struct Loaded {
     pub warnings: Vec<String>,
 }
 
-/// Reads the scene file `path`; `defines` are names and values for its `$name`s.
+/// Reads the scene file `path`; `defines` are names and values for its `$name`s, and `library` is where plugins are that are not
+/// beside the scene.
 ///
 /// # Errors
 /// If anything in the file, or in the files that it names, cannot be read exactly as it is meant.
-pub fn load(path: &Path, defines: &[(String, String)]) -> Result<Loaded> {
+pub fn load(path: &Path, defines: &[(String, String)], library: &Library) -> Result<Loaded> {
     let text = xml::read_text(path, None)?;
-    load_str(&text, path, Some(path.parent().unwrap_or(Path::new(""))), defines)
+    load_str(&text, path, Some(path.parent().unwrap_or(Path::new(""))), defines, library)
 }
 
 /// Reads the text of a scene; `name` is what messages call it, and `base_dir` where files are that it names, if it may name any.
 ///
 /// # Errors
 /// As [`load`].
-pub fn load_str(text: &str, name: &Path, base_dir: Option<&Path>, defines: &[(String, String)]) -> Result<Loaded> {
+pub fn load_str(text: &str, name: &Path, base_dir: Option<&Path>, defines: &[(String, String)], library: &Library) -> Result<Loaded> {
     let tree = xml::read(text, name, base_dir, defines)?;
     let ids = Ids::collect(&tree.root)?;
     let scene = Properties::read(&tree.root, &ids)?;
-    let mut context = Context::new(ids, base_dir, &tree.search);
+    let mut context = Context::new(ids, library, base_dir, &tree.search);
 
     let integrator = match scene.object("integrator")? {
         Some(element) => integrator::integrator(&mut context, element)?,
@@ -73,7 +76,7 @@ pub fn load_str(text: &str, name: &Path, base_dir: Option<&Path>, defines: &[(St
         bsdf::material(&mut context, element)?;
     }
     for element in scene.objects("texture") {
-        texture::texture(&mut context, element, texture::Range::NotNegative, &element.place)?;
+        texture::texture(&mut context, element, texture::Range::NOT_NEGATIVE, &element.place)?;
     }
     let shapes = scene.objects("shape").into_iter().map(|element| shape::shape(&mut context, element)).collect::<Result<_>>()?;
     let emitters = emitters(&mut context, &scene)?;
@@ -102,17 +105,13 @@ fn emitters(context: &mut Context, scene: &Properties) -> Result<Vec<Emitter>> {
     let mut emitters = Vec::new();
     let mut environment = None;
     for element in scene.objects("emitter") {
-        if element.attribute("type") == Some("area") {
-            // For shapes to refer to; it shines from nowhere itself.
-            emitter::unattached_area(context, element)?;
-            continue;
-        }
-        let emitter = emitter::emitter(context, element)?;
-        if matches!(emitter.kind, EmitterKind::Constant { .. } | EmitterKind::Envmap { .. })
+        // One for shapes to refer to shines from nowhere itself.
+        let Some(emitter) = emitter::emitter(context, element)? else { continue };
+        if emitter.kind.is_environment()
             && let Some(first) = environment.replace(properties::line(&element.place))
         {
             let thing = format!("the scene has a second environment; the first is on line {first}");
-            return Err(Error::at(&element.place, thing, "keep one constant or envmap"));
+            return Err(Error::at(&element.place, thing, "keep one of them"));
         }
         emitters.push(emitter);
     }

@@ -59,7 +59,7 @@ pub(super) struct Properties<'s> {
     element: &'s Element,
     entries: Vec<Property<'s>>,
     /// Every name that was asked for: the parameters there are.
-    known: RefCell<Vec<&'static str>>,
+    known: RefCell<Vec<String>>,
 }
 
 impl<'s> Properties<'s> {
@@ -111,9 +111,9 @@ impl<'s> Properties<'s> {
     }
 
     /// A parameter of any type.
-    pub(super) fn any(&self, name: &'static str) -> Option<&Value<'s>> {
-        if !self.known.borrow().contains(&name) {
-            self.known.borrow_mut().push(name);
+    pub(super) fn any(&self, name: &str) -> Option<&Value<'s>> {
+        if !self.known.borrow().iter().any(|known| known == name) {
+            self.known.borrow_mut().push(name.to_owned());
         }
         let entry = self.entries.iter().find(|e| e.name == Some(name))?;
         entry.used.set(true);
@@ -121,12 +121,12 @@ impl<'s> Properties<'s> {
     }
 
     /// Whether a parameter is written.
-    pub(super) fn has(&self, name: &'static str) -> bool {
+    pub(super) fn has(&self, name: &str) -> bool {
         self.any(name).is_some()
     }
 
     /// A number.
-    pub(super) fn float(&self, name: &'static str) -> Result<Option<f64>> {
+    pub(super) fn float(&self, name: &str) -> Result<Option<f64>> {
         match self.any(name) {
             None => Ok(None),
             Some(Value::Float(v)) => Ok(Some(*v)),
@@ -136,7 +136,7 @@ impl<'s> Properties<'s> {
     }
 
     /// A number above 0.
-    pub(super) fn positive(&self, name: &'static str) -> Result<Option<f64>> {
+    pub(super) fn positive(&self, name: &str) -> Result<Option<f64>> {
         match self.float(name)? {
             // Smaller ones are 0 in f32.
             Some(v) if v < 1e-30 => Err(self.error(name, format!("is {v:e}"), "it must lie above 0 (1e-30 … 1e30)")),
@@ -145,7 +145,7 @@ impl<'s> Properties<'s> {
     }
 
     /// A whole number that is at least `least`.
-    pub(super) fn whole(&self, name: &'static str, least: i64) -> Result<Option<i64>> {
+    pub(super) fn whole(&self, name: &str, least: i64) -> Result<Option<i64>> {
         match self.any(name) {
             None => Ok(None),
             Some(Value::Integer(v)) if *v < least || *v > i64::from(u32::MAX) => {
@@ -157,7 +157,7 @@ impl<'s> Properties<'s> {
     }
 
     /// True or false.
-    pub(super) fn boolean(&self, name: &'static str) -> Result<Option<bool>> {
+    pub(super) fn boolean(&self, name: &str) -> Result<Option<bool>> {
         match self.any(name) {
             None => Ok(None),
             Some(Value::Boolean(v)) => Ok(Some(*v)),
@@ -166,7 +166,7 @@ impl<'s> Properties<'s> {
     }
 
     /// A text.
-    pub(super) fn text(&self, name: &'static str) -> Result<Option<&str>> {
+    pub(super) fn text(&self, name: &str) -> Result<Option<&str>> {
         match self.any(name) {
             None => Ok(None),
             Some(Value::Text(v)) => Ok(Some(v)),
@@ -175,7 +175,7 @@ impl<'s> Properties<'s> {
     }
 
     /// One word out of several, in any case; the first where it is not written.
-    pub(super) fn choice<T: Copy>(&self, name: &'static str, words: &[(&str, T)]) -> Result<T> {
+    pub(super) fn choice<T: Copy>(&self, name: &str, words: &[(&str, T)]) -> Result<T> {
         let Some(text) = self.text(name)? else { return Ok(words[0].1) };
         let found = words.iter().find(|(word, _)| word.eq_ignore_ascii_case(text.trim()));
         let names: Vec<&str> = words.iter().map(|(word, _)| *word).collect();
@@ -186,12 +186,12 @@ impl<'s> Properties<'s> {
     }
 
     /// A text that must be there.
-    pub(super) fn required_text(&self, name: &'static str) -> Result<&str> {
+    pub(super) fn required_text(&self, name: &str) -> Result<&str> {
         self.text(name)?.ok_or_else(|| self.missing(name, "string"))
     }
 
     /// A colour: one number or one for each band.
-    pub(super) fn color(&self, name: &'static str) -> Result<Option<Spectrum>> {
+    pub(super) fn color(&self, name: &str) -> Result<Option<Spectrum>> {
         match self.any(name) {
             None => Ok(None),
             Some(Value::Color(v)) => Ok(Some(*v)),
@@ -205,7 +205,7 @@ impl<'s> Properties<'s> {
     }
 
     /// How much light something gives; 1 in every band where it is not written.
-    pub(super) fn radiance(&self, name: &'static str) -> Result<Spectrum> {
+    pub(super) fn radiance(&self, name: &str) -> Result<Spectrum> {
         let color = self.color(name)?.unwrap_or(Spectrum::ONE);
         if color.0.iter().any(|v| *v < 0.0) {
             return Err(self.error(name, "is negative", "light cannot be less than 0"));
@@ -214,7 +214,7 @@ impl<'s> Properties<'s> {
     }
 
     /// A point or a direction.
-    pub(super) fn vector(&self, name: &'static str) -> Result<Option<DVec3>> {
+    pub(super) fn vector(&self, name: &str) -> Result<Option<DVec3>> {
         match self.any(name) {
             None => Ok(None),
             Some(Value::Vector(v)) => Ok(Some(*v)),
@@ -223,7 +223,7 @@ impl<'s> Properties<'s> {
     }
 
     /// A transform; the identity where it is not written.
-    pub(super) fn transform(&self, name: &'static str) -> Result<DAffine3> {
+    pub(super) fn transform(&self, name: &str) -> Result<DAffine3> {
         match self.any(name) {
             None => Ok(DAffine3::IDENTITY),
             Some(Value::Transform(v)) => Ok(*v),
@@ -255,7 +255,7 @@ impl<'s> Properties<'s> {
     }
 
     /// A parameter that Mitsuba has and that cannot be passed over.
-    pub(super) fn refuse(&self, name: &'static str, remedy: &str) -> Result<()> {
+    pub(super) fn refuse(&self, name: &str, remedy: &str) -> Result<()> {
         if self.entries.iter().any(|e| e.name == Some(name)) {
             return Err(self.error(name, "is not supported", remedy));
         }
@@ -263,7 +263,7 @@ impl<'s> Properties<'s> {
     }
 
     /// Parameters that Mitsuba has and that change no image here.
-    pub(super) fn pass_over(&self, names: &[&'static str]) {
+    pub(super) fn pass_over(&self, names: &[&str]) {
         for name in names {
             self.any(name);
         }
@@ -282,6 +282,7 @@ impl<'s> Properties<'s> {
     pub(super) fn finish(self) -> Result<()> {
         let Some(entry) = self.entries.iter().find(|e| !e.used.get()) else { return Ok(()) };
         let known = self.known.borrow();
+        let known: Vec<&str> = known.iter().map(String::as_str).collect();
         let place = &entry.element.place;
         let owner = self.label();
         match (&entry.value, entry.name) {
@@ -298,7 +299,7 @@ impl<'s> Properties<'s> {
         }
     }
 
-    fn wrong_type(&self, name: &'static str, value: &Value, tag: &str) -> Error {
+    pub(super) fn wrong_type(&self, name: &str, value: &Value, tag: &str) -> Error {
         let is = match value {
             Value::Float(_) => "a float",
             Value::Integer(_) => "an integer",

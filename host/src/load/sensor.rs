@@ -47,7 +47,7 @@ pub(super) fn sensor(ids: &Ids, element: &Element) -> Result<Equipment> {
             return Err(of.error("to_world", "scales or skews the camera", "only move, turn and mirror it; fov sets how much it sees"));
         }
         if of.kind() == "perspective" {
-            let offset = |name| Ok(of.float(name)?.unwrap_or(0.0));
+            let offset = |name| of.float(name).map(|v| v.unwrap_or(0.0));
             principal_point_offset = DVec2::new(offset("principal_point_offset_x")?, offset("principal_point_offset_y")?);
         }
         perspective(&of, &film, far_clip)?

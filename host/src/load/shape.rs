@@ -24,13 +24,13 @@ pub(super) fn shape(context: &mut Context, element: &Element) -> Result<Shape> {
         Some(bsdf) => bsdf::material(context, bsdf)?,
         None => bsdf::default(context),
     };
-    let radiance = match of.object("emitter")? {
+    let light = match of.object("emitter")? {
         Some(light) => Some(emitter::area(context, light, &element.place)?),
         None => None,
     };
     of.finish()?;
     let name = element.attribute("id").or(element.attribute("type")).unwrap_or("shape").to_owned();
-    Ok(Shape { geometry, material, radiance, name, place: element.place.clone() })
+    Ok(Shape { geometry, material, light, name, place: element.place.clone() })
 }
 
 fn geometry(context: &mut Context, of: &Properties) -> Result<Geometry> {

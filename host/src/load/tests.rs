@@ -6,12 +6,12 @@ use bidir_kernel::Spectrum;
 use glam::DVec3;
 
 use super::*;
-use crate::scene::description::{Filter, Geometry, Material, SensorKind, Texture, Wrap};
+use crate::scene::description::{Filter, Geometry, Material, SensorKind, ShapeLight, Texture, Wrap};
 
 const SENSOR: &str = "<sensor type=\"perspective\"/>";
 
 fn read(content: &str) -> Result<Loaded> {
-    load_str(&format!("<scene version=\"3.0.0\">{content}</scene>"), Path::new("s.xml"), None, &[])
+    load_str(&format!("<scene version=\"3.0.0\">{content}</scene>"), Path::new("s.xml"), None, &[], &Library::default())
 }
 
 /// A scene that has a sensor already.
@@ -123,7 +123,7 @@ fn depths_are_read_as_written() {
 #[test]
 fn an_unknown_parameter_tells_its_place_its_neighbour_and_all_there_are() {
     let text = "<scene version=\"3.0.0\"><sensor type=\"perspective\"/>\n<shape type=\"sphere\">\n  <float name=\"raduis\" value=\"1\"/></shape></scene>";
-    let error = load_str(text, Path::new("s.xml"), None, &[]).unwrap_err().to_string();
+    let error = load_str(text, Path::new("s.xml"), None, &[], &Library::default()).unwrap_err().to_string();
     assert!(error.starts_with("s.xml:3:3: shape \"sphere\" has no parameter \"raduis\"; did you mean \"radius\"? it has "), "{error}");
     assert!(error.contains("center"), "{error}");
 }
@@ -231,7 +231,7 @@ fn lights_have_mitsubas_defaults() {
     assert!(matches!(scene.emitters[0].kind, EmitterKind::Point { position: DVec3::ZERO, intensity: Spectrum::ONE }));
     assert!(matches!(scene.emitters[1].kind, EmitterKind::Spot { cutoff_angle: 20.0, beam_width: 15.0, .. }));
     assert!(matches!(scene.emitters[2].kind, EmitterKind::Directional { direction: DVec3::Z, .. }));
-    assert_eq!(scene.shapes[0].radiance, Some(Spectrum::ONE));
+    assert!(matches!(scene.shapes[0].light, Some(ShapeLight::Area(Spectrum::ONE))));
 }
 
 #[test]
@@ -265,7 +265,7 @@ fn beside(name: &str, content: &[u8], scene: &str) -> Result<Loaded> {
     std::fs::write(folder.path().join(name), content).unwrap();
     let path = folder.path().join("scene.xml");
     std::fs::write(&path, format!("<scene version=\"3.0.0\">{SENSOR}{scene}</scene>")).unwrap();
-    load(&path, &[])
+    load(&path, &[], &Library::default())
 }
 
 const OBJ: &str = "<shape type=\"obj\"><string name=\"filename\" value=\"m.obj\"/></shape>";
@@ -324,8 +324,8 @@ fn a_bitmap_is_read_with_its_options() {
 #[test]
 fn a_folder_and_a_missing_scene_are_errors() {
     let folder = tempfile::tempdir().unwrap();
-    assert!(load(folder.path(), &[]).unwrap_err().to_string().contains("is not a file"));
-    assert!(load(&folder.path().join("none.xml"), &[]).unwrap_err().to_string().contains("cannot be read"));
+    assert!(load(folder.path(), &[], &Library::default()).unwrap_err().to_string().contains("is not a file"));
+    assert!(load(&folder.path().join("none.xml"), &[], &Library::default()).unwrap_err().to_string().contains("cannot be read"));
 }
 
 #[test]
@@ -335,9 +335,10 @@ fn a_scene_cut_short_or_garbled_anywhere_is_an_error_or_a_scene_but_never_a_pani
          <shape type=\"cube\"><transform name=\"to_world\"><rotate y=\"1\" angle=\"$a\"/></transform><ref id=\"b\"/></shape></scene>"
     );
     for at in 0..whole.len() {
-        let _either = load_str(&whole[..at], Path::new("s.xml"), None, &[]);
+        let _either = load_str(&whole[..at], Path::new("s.xml"), None, &[], &Library::default());
         for other in ["\"", "<", ">", "$", "-", "9", "é", " "] {
-            let _either = load_str(&format!("{}{other}{}", &whole[..at], &whole[at + 1..]), Path::new("s.xml"), None, &[]);
+            let _either =
+                load_str(&format!("{}{other}{}", &whole[..at], &whole[at + 1..]), Path::new("s.xml"), None, &[], &Library::default());
         }
     }
 }

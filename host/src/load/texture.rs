@@ -18,29 +18,36 @@ use crate::{
 };
 
 /// What a texture's values may be.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Range {
-    /// 0 … 1: what scales light must not add any.
-    Fraction,
-    /// 0 or more.
-    NotNegative,
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Range {
+    /// Of every band.
+    pub(super) min: f32,
+    /// Of every band.
+    pub(super) max: f32,
 }
 
 impl Range {
+    /// What scales light must not add any.
+    pub(super) const FRACTION: Self = Self { min: 0.0, max: 1.0 };
+    /// 0 or more.
+    pub(super) const NOT_NEGATIVE: Self = Self { min: 0.0, max: f32::MAX };
+
     fn holds(self, color: &Spectrum) -> bool {
-        color.0.iter().all(|v| *v >= 0.0 && v.is_finite() && (self == Self::NotNegative || *v <= 1.0))
+        color.0.iter().all(|v| (self.min..=self.max).contains(v))
     }
 
-    fn remedy(self) -> &'static str {
+    fn remedy(self) -> String {
         match self {
-            Self::Fraction => "every band must lie within 0 … 1",
-            Self::NotNegative => "every band must be finite and not negative",
+            Self { min, max } if max < f32::MAX => format!("every band must lie within {min} … {max}"),
+            Self { min: 0.0, .. } => "every band must be finite and not negative".to_owned(),
+            Self { min, .. } if min > f32::MIN => format!("every band must be finite, and {min} or more"),
+            _ => "every band must be finite".to_owned(),
         }
     }
 }
 
 /// A parameter that may be a texture, `default` if it is not written.
-pub(super) fn parameter(context: &mut Context, of: &Properties, name: &'static str, default: f32, range: Range) -> Result<Texture> {
+pub(super) fn parameter(context: &mut Context, of: &Properties, name: &str, default: f32, range: Range) -> Result<Texture> {
     if let Some(Value::Object(object)) = of.any(name) {
         if object.tag != "texture" {
             return Err(of.error(name, format!("is a <{}>", object.tag), "write a <texture>, <rgb> or <float>"));
@@ -108,7 +115,7 @@ fn bitmap(context: &mut Context, properties: &Properties) -> Result<Arc<Bitmap>>
 /// An error in a file, told where the scene names it.
 pub(super) fn named_here(error: &Error, place: &Place) -> Error {
     let file = error.place.as_ref().map(|p| format!("{p}: ")).unwrap_or_default();
-    Error::at(place, format!("{file}{}", error.thing), error.remedy.clone())
+    Error { blame: error.blame, ..Error::at(place, format!("{file}{}", error.thing), error.remedy.clone()) }
 }
 
 fn to_uv(properties: &Properties) -> Result<UvTransform> {

@@ -9,7 +9,7 @@ use super::effects::{lobes, sides};
 use crate::scene::{
     Scene,
     description::{Crop, Description, Filter, Geometry, Integrator, Material, MaterialId, SensorKind, Texture},
-    lights::LightSource,
+    lights::ProfileSource,
 };
 
 /// A scene in numbers.
@@ -107,7 +107,7 @@ pub struct Materials {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Lights {
     /// As the scene language calls it.
-    pub kind: &'static str,
+    pub kind: String,
     /// How many.
     pub count: usize,
     /// W, mean of the bands; of far away ones, what they send through a disk around the scene.
@@ -123,7 +123,7 @@ impl Contents {
         let (materials, worn) = materials(description);
         let lights = lights(scene);
         let shining: usize = lights.iter().map(|light| light.count).sum();
-        let written = description.emitters.len() + description.shapes.iter().filter(|shape| shape.radiance.is_some()).count();
+        let written = description.emitters.len() + description.shapes.iter().filter(|shape| shape.light.is_some()).count();
         Self {
             camera: camera(description),
             integrator: Depths { kind, max_depth, rr_depth, hide_emitters },
@@ -217,15 +217,16 @@ fn materials(description: &Description) -> (Vec<Materials>, usize) {
 
 fn kind(materials: &[Material], id: MaterialId) -> String {
     let name = |material: &Material| match material {
-        Material::Diffuse { .. } => "diffuse",
-        Material::Conductor { .. } => "conductor",
-        Material::RoughConductor { .. } => "roughconductor",
-        Material::Dielectric { .. } => "dielectric",
-        Material::ThinDielectric { .. } => "thindielectric",
-        Material::RoughDielectric { .. } => "roughdielectric",
-        Material::Plastic { .. } => "plastic",
-        Material::Null => "null",
-        Material::TwoSided { .. } => "twosided",
+        Material::Plugin(shader) => format!("{} (plugin)", shader.name()),
+        Material::Diffuse { .. } => "diffuse".to_owned(),
+        Material::Conductor { .. } => "conductor".to_owned(),
+        Material::RoughConductor { .. } => "roughconductor".to_owned(),
+        Material::Dielectric { .. } => "dielectric".to_owned(),
+        Material::ThinDielectric { .. } => "thindielectric".to_owned(),
+        Material::RoughDielectric { .. } => "roughdielectric".to_owned(),
+        Material::Plastic { .. } => "plastic".to_owned(),
+        Material::Null => "null".to_owned(),
+        Material::TwoSided { .. } => "twosided".to_owned(),
     };
     let twosided = matches!(materials.get(id.0 as usize), Some(Material::TwoSided { .. }));
     let mut names: Vec<_> = sides(materials, id).into_iter().map(name).collect();
@@ -247,19 +248,19 @@ fn lobe_names(lobes: Lobe) -> Vec<&'static str> {
 }
 
 fn lights(scene: &Scene) -> Vec<Lights> {
-    let mut kinds =
-        ["area", "point", "spot", "directional", "constant", "envmap"].map(|kind| Lights { kind, count: 0, power: 0.0, share: 0.0 });
+    let built_in = ["area", "point", "spot", "directional", "constant", "envmap"];
+    let mut kinds: Vec<Lights> = built_in.map(|kind| Lights { kind: kind.to_owned(), count: 0, power: 0.0, share: 0.0 }).into();
     for light in scene.all_lights().sources() {
-        let kind = match light {
-            LightSource::Area(_) => 0,
-            LightSource::Point(_) => 1,
-            LightSource::Spot(_) => 2,
-            LightSource::Directional(_) => 3,
-            LightSource::Constant(_) => 4,
-            LightSource::Envmap(_) => 5,
+        let kind = match &light.profile {
+            ProfileSource::Plugin(plugin) => format!("{} (plugin)", plugin.name),
+            _ => light.kind().to_owned(),
         };
-        kinds[kind].count += 1;
-        kinds[kind].power += light.power();
+        let at = kinds.iter().position(|known| known.kind == kind).unwrap_or_else(|| {
+            kinds.push(Lights { kind, count: 0, power: 0.0, share: 0.0 });
+            kinds.len() - 1
+        });
+        kinds[at].count += 1;
+        kinds[at].power += light.power();
     }
     let total: f64 = kinds.iter().map(|kind| kind.power).sum();
     let with_share = |kind: Lights| Lights { share: kind.power / total, ..kind };

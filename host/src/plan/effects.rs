@@ -4,10 +4,11 @@ use bidir_kernel::{Lobe, Real, Spectrum};
 use bidir_standard::Microfacet;
 use serde::Serialize;
 
+use crate::plugin::Roster;
 use crate::scene::{
     Scene,
     description::{Description, Geometry, Material, MaterialId, SensorKind, Texture},
-    lights::LightSource,
+    lights::Seat,
     surface::Finish,
 };
 
@@ -53,10 +54,10 @@ impl Effects {
     pub fn of(description: &Description, scene: &Scene) -> Self {
         let mut effects = Self { hidden_emitters: description.integrator.hide_emitters, ..Self::default() };
         for light in scene.all_lights().sources() {
-            match light {
-                LightSource::Area(_) => effects.area_lights = true,
-                LightSource::Constant(_) | LightSource::Envmap(_) => effects.environment = true,
-                LightSource::Point(_) | LightSource::Spot(_) | LightSource::Directional(_) => effects.dirac_lights = true,
+            match light.seat {
+                Seat::Shape(_) => effects.area_lights = true,
+                Seat::Environment { .. } => effects.environment = true,
+                Seat::Point { .. } | Seat::Directional(_) => effects.dirac_lights = true,
             }
         }
         for shape in &description.shapes {
@@ -83,6 +84,11 @@ impl Effects {
             match material {
                 Material::Dielectric { eta, .. } | Material::RoughDielectric { eta, .. } if *eta != 1.0 => self.refraction = true,
                 Material::Dielectric { .. } | Material::ThinDielectric { .. } | Material::Null => self.straight_transmission = true,
+                // What a module does with what it transmits is not known before it is asked.
+                Material::Plugin(_) => {
+                    self.refraction |= lobes.intersects(Lobe::GLOSSY_TRANSMISSION | Lobe::DELTA_TRANSMISSION);
+                    self.straight_transmission |= lobes.intersects(Lobe::DELTA_TRANSMISSION);
+                }
                 _ => {}
             }
             self.textures |= material.textures().iter().any(|texture| !matches!(texture, Texture::Constant(_)));
@@ -150,7 +156,7 @@ pub fn lobes(materials: &[Material], id: MaterialId) -> Lobe {
 }
 
 fn one_sided(materials: &[Material], id: MaterialId) -> Lobe {
-    let looked_up = || Finish::new(materials, id).map_or(Lobe::NONE, |finish| finish.lobes());
+    let looked_up = || Finish::new(materials, id, &mut Roster::default()).map_or(Lobe::NONE, |finish| finish.lobes());
     let varies = |u: &Texture, v: &Texture| !matches!((u, v), (Texture::Constant(_), Texture::Constant(_)));
     match materials.get(id.0 as usize) {
         Some(Material::Diffuse { reflectance: Texture::Constant(Spectrum::BLACK) } | Material::TwoSided { .. }) => Lobe::NONE,

@@ -15,6 +15,7 @@ use bidir_kernel::{LightVertex, Sampler, Strategy, Vec2, Walk, sample};
 
 use crate::{
     film::{Exposure, Store},
+    plugin::{Fault, Quarantine, Strictness},
     scene::{
         Scene,
         view::{RayCounts, View},
@@ -55,10 +56,12 @@ pub struct Job {
     pub target: Target,
     /// Pixels in a row of the whole image: a pixel's numbers do not depend on the crop window.
     pub width: u32,
+    /// What a plugin's bad answer does.
+    pub strictness: Strictness,
 }
 
 /// Where a render stands, or ended.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Status {
     /// Samples of every pixel that are on the film.
     pub samples: u32,
@@ -72,6 +75,10 @@ pub struct Status {
     pub interrupted: bool,
     /// Whether a render thread broke down; what was on the film before stays.
     pub failed: bool,
+    /// What plugins answered that could not be.
+    pub quarantine: Quarantine,
+    /// The plugin that broke off, and so ended the render; what was on the film before stays, and so do the tiles under way elsewhere.
+    pub fault: Option<Fault>,
 }
 
 /// Renders onto an empty `film`. After each pass, `report` is told where the render stands and answers the estimated error,
@@ -95,10 +102,15 @@ pub fn render<S: Store>(
             status.failed = true;
             return status;
         };
+        if status.fault.is_some() {
+            status.elapsed = start.elapsed();
+            report(&status);
+            return status;
+        }
         if claimed < end || interrupt.load(Ordering::Relaxed) {
             // Finish the sample that some pixels have already.
             run(scene, film, job, claimed, None, &mut status);
-            status.samples = claimed;
+            status.samples = if status.fault.is_some() { status.samples } else { claimed };
             status.interrupted = true;
         } else {
             status.samples = end;
@@ -131,8 +143,10 @@ fn affordable(status: &Status, target: Target) -> u32 {
 
 /// Renders every unit whose sample is below `end`; returns the samples of which a unit was begun. `None` if no thread could do any work.
 fn run<S: Store>(scene: &Scene, film: &S, job: &Job, end: u32, interrupt: Option<&AtomicBool>, status: &mut Status) -> Option<u32> {
+    let faulted = AtomicBool::new(false);
+    let stop = Stop { interrupt, faulted: &faulted };
     let workers: Vec<Option<Worked>> = std::thread::scope(|scope| {
-        let workers: Vec<_> = (0..job.threads.max(1)).map(|_| scope.spawn(|| chosen(scene, film, job, end, interrupt))).collect();
+        let workers: Vec<_> = (0..job.threads.max(1)).map(|_| scope.spawn(|| chosen(scene, film, job, end, stop))).collect();
         workers.into_iter().map(|worker| worker.join().ok()).collect()
     });
     let mut begun = status.samples;
@@ -141,6 +155,8 @@ fn run<S: Store>(scene: &Scene, film: &S, job: &Job, end: u32, interrupt: Option
         begun = begun.max(worked.begun);
         status.cpu += worked.cpu;
         status.rays += worked.rays;
+        status.quarantine.merge(worked.quarantine);
+        status.fault = status.fault.take().or(worked.fault);
     }
     Some(begun)
 }
@@ -156,31 +172,48 @@ impl<S: Store> Drop for Guard<'_, S> {
     }
 }
 
+/// Why threads begin no other unit.
+#[derive(Clone, Copy)]
+struct Stop<'a> {
+    interrupt: Option<&'a AtomicBool>,
+    /// Set by the thread whose plugin broke off.
+    faulted: &'a AtomicBool,
+}
+
+impl Stop<'_> {
+    fn asked(&self) -> bool {
+        self.faulted.load(Ordering::Relaxed) || self.interrupt.is_some_and(|interrupt| interrupt.load(Ordering::Relaxed))
+    }
+}
+
 /// What one thread did.
 struct Worked {
     begun: u32,
     cpu: Duration,
     rays: RayCounts,
+    quarantine: Quarantine,
+    fault: Option<Fault>,
 }
 
-fn chosen<S: Store>(scene: &Scene, film: &S, job: &Job, end: u32, interrupt: Option<&AtomicBool>) -> Worked {
+fn chosen<S: Store>(scene: &Scene, film: &S, job: &Job, end: u32, stop: Stop) -> Worked {
     match job.numbers {
-        Numbers::Sobol => work::<S, Sobol>(scene, film, job, end, interrupt),
-        Numbers::Independent => work::<S, Apart>(scene, film, job, end, interrupt),
+        Numbers::Sobol => work::<S, Sobol>(scene, film, job, end, stop),
+        Numbers::Independent => work::<S, Apart>(scene, film, job, end, stop),
     }
 }
 
-fn work<S: Store, N: Source>(scene: &Scene, film: &S, job: &Job, end: u32, interrupt: Option<&AtomicBool>) -> Worked {
+fn work<S: Store, N: Source>(scene: &Scene, film: &S, job: &Job, end: u32, stop: Stop) -> Worked {
     let _guard = Guard(film);
     let clock = cpu_time::ThreadTime::now();
-    let view = View::new(scene);
+    let view = View::new(scene, job.strictness);
     let mut light_path = light_path(&job.strategy);
     let mut begun = 0;
-    while !interrupt.is_some_and(|interrupt| interrupt.load(Ordering::Relaxed)) {
+    while !stop.asked() {
         let Some(mut buffer) = film.claim(end) else { break };
         let unit = buffer.unit();
         begun = begun.max(unit.sample + 1);
         let source = N::new(job.seed, unit.sample);
+        view.sandbox().begin_tile(unit.index);
         for (x, y) in film.pixels(&unit) {
             let pixel = u64::from(y) * u64::from(job.width) + u64::from(x);
             let mut numbers = source.pixel(pixel);
@@ -189,11 +222,18 @@ fn work<S: Store, N: Source>(scene: &Scene, film: &S, job: &Job, end: u32, inter
             let raster = Vec2::new(x as f32 + dx, y as f32 + dy);
             buffer.begin(raster);
             sample(&view, &job.strategy, &mut numbers, raster, &mut light_path, &mut buffer);
+            if view.sandbox().faulted() {
+                // Nothing of this tile is known to be whole. It is handed in empty, so that the tiles after it still arrive.
+                stop.faulted.store(true, Ordering::Relaxed);
+                buffer.clear();
+                break;
+            }
             buffer.end();
         }
         film.commit(buffer);
     }
-    Worked { begun, cpu: clock.elapsed(), rays: view.rays() }
+    let (quarantine, fault) = (view.sandbox().quarantine(), view.sandbox().fault());
+    Worked { begun, cpu: clock.elapsed(), rays: view.rays(), quarantine, fault }
 }
 
 /// Storage for the light walk's vertices: enough for the longest path that is joined.

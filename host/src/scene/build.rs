@@ -1,19 +1,22 @@
 //! From a description to a scene: world coordinates about the scene's own centre, the tree, the lights.
 
-use bidir_kernel::{Frame, Mat3, Real, Vec3, light::AreaLight, math};
+use std::sync::Arc;
+
+use bidir_kernel::{Frame, Mat3, Real, Vec3, math};
 use bidir_standard as standard;
 use glam::{DAffine3, DMat3, DVec3};
 
 use crate::{
     error::{Error, Result},
+    plugin::{Roster, Sandbox, Strictness},
     rays::{self, Bvh, Geometry as _, Primitives, Visibility},
     scene::{
         Scene,
         camera::SceneCamera,
         choice::Lights,
-        description::{self, Description, EmitterKind, Geometry, MaterialId},
+        description::{self, Description, EmitterKind, Geometry, MaterialId, PluginShader, ShapeLight},
         extent::{Ball, Ellipse, Flat, LightExtent, Parallelogram, Surface, Tube},
-        lights::{EnvironmentTables, LightSource, environment_frame},
+        lights::{EnvironmentTables, LightSource, PluginProfile, ProfileSource, Seat, environment_frame},
         shape::{Form, MeshForm, Shape},
         surface::Finish,
     },
@@ -27,14 +30,17 @@ struct Builder<'a> {
     owners: Vec<(u32, u32)>,
     shapes: Vec<Shape>,
     finishes: Vec<Finish>,
-    sources: Vec<LightSource>,
+    roster: Roster,
+    sources: Vec<(Seat, ProfileSource)>,
     degenerate: usize,
 }
 
 impl Scene {
     /// Builds the scene; what it drops on the way it counts in [`Scene::degenerate`].
     pub fn new(description: &Description) -> Result<Self> {
-        let finishes = (0..description.materials.len() as u32).map(|id| Finish::new(&description.materials, MaterialId(id)));
+        let mut roster = Roster::default();
+        let ids = 0..description.materials.len() as u32;
+        let finishes = ids.map(|id| Finish::new(&description.materials, MaterialId(id), &mut roster));
         let finishes = finishes.collect::<Option<Vec<_>>>().ok_or_else(|| {
             Error::new("a material names one that is not there, or a twosided one inside another", "give each side a plain material")
         })?;
@@ -45,6 +51,7 @@ impl Scene {
             owners: Vec::new(),
             shapes: Vec::new(),
             finishes,
+            roster,
             sources: Vec::new(),
             degenerate: 0,
         };
@@ -94,7 +101,7 @@ impl Builder<'_> {
 
     fn shape(&mut self, shape: &description::Shape) -> Result<()> {
         let index = self.shapes.len() as u32;
-        let hidden = shape.radiance.is_some_and(|radiance| !radiance.is_black()) && self.description.integrator.hide_emitters;
+        let hidden = shape.light.as_ref().is_some_and(|light| !light.is_black()) && self.description.integrator.hide_emitters;
         let visibility = if hidden { Visibility::HiddenFromLens } else { Visibility::Everywhere };
         let facing = |flip: bool| if flip { -1.0 } else { 1.0 };
         let (form, facing, extent) = match &shape.geometry {
@@ -123,7 +130,7 @@ impl Builder<'_> {
                 self.owners.push((index, 0));
                 self.primitives.sphere(rays::Sphere { centre: center, radius }, visibility);
                 let outward = facing(*flip_normals) * to_world.matrix3.determinant().signum() as Real;
-                (Form::Sphere(axes), outward, LightExtent::Ball(Ball { center, radius, outward }))
+                (Form::Sphere(axes), outward, LightExtent::Ball(Ball { center, radius, outward, both_sides: false }))
             }
             Geometry::Cylinder { p0, p1, radius, to_world, flip_normals } => {
                 let (_, scale) = similarity(to_world).ok_or_else(|| unequal(shape, "cylinder"))?;
@@ -143,12 +150,16 @@ impl Builder<'_> {
             Geometry::Mesh { mesh, to_world, flip_normals } => {
                 let form = mesh_form(mesh.clone(), to_world);
                 let outward = facing(*flip_normals);
-                let surface = self.mesh(&form, to_world, index, visibility, outward, shape.radiance.is_some());
+                let surface = self.mesh(&form, to_world, index, visibility, outward, shape.light.is_some());
                 (Form::Mesh(form), outward, LightExtent::Surface(surface))
             }
         };
-        let light = shape.radiance.map(|radiance| {
-            self.sources.push(LightSource::Area(AreaLight { extent, profile: standard::Area { radiance } }));
+        let light = shape.light.as_ref().map(|light| {
+            let profile = match light {
+                ShapeLight::Area(radiance) => ProfileSource::Area(standard::Area { radiance: *radiance }),
+                ShapeLight::Plugin(shader) => self.profile(shader),
+            };
+            self.sources.push((Seat::Shape(extent), profile));
             // Their final names come once the black ones are dropped.
             crate::scene::lights::LightId(self.sources.len() as u32 - 1)
         });
@@ -214,9 +225,16 @@ impl Builder<'_> {
             (0.5 * (bounds.max + bounds.min), half.length() * (1.0 + 1e-5))
         };
         for emitter in &self.description.emitters {
-            self.sources.push(self.emitter(emitter, center, radius)?);
+            let source = self.emitter(emitter, center, radius)?;
+            self.sources.push(source);
         }
-        let (lights, ids) = Lights::new(self.sources);
+        let roster = Arc::new(self.roster);
+        let sandbox = Sandbox::new(Arc::clone(&roster), Strictness::Lenient);
+        let sources = self.sources.into_iter().map(|(seat, profile)| LightSource::new(seat, profile, &sandbox)).collect();
+        if let Some(fault) = sandbox.fault() {
+            return Err(fault.into());
+        }
+        let (lights, ids) = Lights::new(sources);
         for shape in &mut self.shapes {
             shape.light = shape.light.and_then(|id| ids[id.0 as usize]);
         }
@@ -227,13 +245,19 @@ impl Builder<'_> {
             shapes: self.shapes,
             finishes: self.finishes,
             lights,
+            roster,
             hides_emitters: self.description.integrator.hide_emitters,
             degenerate: self.degenerate,
         })
     }
 
-    fn emitter(&self, emitter: &description::Emitter, center: Vec3, radius: Real) -> Result<LightSource> {
-        use bidir_kernel::light::{EnvironmentLight, PointLight};
+    /// A plugin's profile, added to the roster.
+    fn profile(&mut self, shader: &PluginShader) -> ProfileSource {
+        let id = self.roster.add(&shader.module, &shader.block);
+        ProfileSource::Plugin(PluginProfile { id, textures: shader.textures.clone(), name: shader.name() })
+    }
+
+    fn emitter(&mut self, emitter: &description::Emitter, center: Vec3, radius: Real) -> Result<(Seat, ProfileSource)> {
         let degenerate =
             || Error::at(&emitter.place, "the emitter's transform or direction is degenerate", "give it a direction of some length");
         let axes = |to_world: &DAffine3| -> Result<[Vec3; 3]> {
@@ -241,43 +265,39 @@ impl Builder<'_> {
             let axis = |v: DVec3| v.try_normalize().map(|v| v.as_vec3()).ok_or_else(degenerate);
             Ok([axis(m.x_axis)?, axis(m.y_axis)?, axis(m.z_axis)?])
         };
+        let origin = self.origin;
+        let point = |to_world: &DAffine3| -> Result<Seat> {
+            let [x, _, z] = axes(to_world)?;
+            Ok(Seat::Point { position: (to_world.translation - origin).as_vec3(), frame: Frame::from_z_and_tangent(z, x) })
+        };
+        let around = |to_world: &DAffine3| -> Result<Seat> {
+            let [x, y, z] = axes(to_world)?;
+            Ok(Seat::Environment { center, radius, frame: environment_frame(x, y, z) })
+        };
         Ok(match &emitter.kind {
-            EmitterKind::Point { position, intensity } => LightSource::Point(PointLight {
-                position: (*position - self.origin).as_vec3(),
-                frame: Frame::from_z(Vec3::Z),
-                profile: standard::Isotropic { intensity: *intensity },
-            }),
-            EmitterKind::Spot { to_world, intensity, cutoff_angle, beam_width } => {
-                let [x, _, z] = axes(to_world)?;
-                LightSource::Spot(PointLight {
-                    position: (to_world.translation - self.origin).as_vec3(),
-                    frame: Frame::from_z_and_tangent(z, x),
-                    profile: standard::Spot {
-                        intensity: *intensity,
-                        cutoff: cutoff_angle.to_radians() as Real,
-                        beam_width: beam_width.to_radians() as Real,
-                    },
-                })
+            EmitterKind::Point { position, intensity } => {
+                (point(&DAffine3::from_translation(*position))?, ProfileSource::Isotropic(standard::Isotropic { intensity: *intensity }))
             }
-            EmitterKind::Directional { direction, irradiance } => LightSource::Directional(standard::Directional {
-                direction: direction.try_normalize().ok_or_else(degenerate)?.as_vec3(),
-                irradiance: *irradiance,
-                center,
-                radius,
-            }),
-            EmitterKind::Constant { radiance } => LightSource::Constant(EnvironmentLight {
-                center,
-                radius,
-                frame: Frame::from_z(Vec3::Y),
-                profile: standard::Constant { radiance: *radiance },
-            }),
+            EmitterKind::Spot { to_world, intensity, cutoff_angle, beam_width } => {
+                let spot = standard::Spot::from_degrees(*intensity, *cutoff_angle as Real, *beam_width as Real);
+                (point(to_world)?, ProfileSource::Spot(spot))
+            }
+            EmitterKind::Directional { direction, irradiance } => {
+                let direction = direction.try_normalize().ok_or_else(degenerate)?.as_vec3();
+                let light = standard::Directional { direction, irradiance: *irradiance, center, radius };
+                (Seat::Directional(light), ProfileSource::Constant(standard::Constant { radiance: *irradiance }))
+            }
+            EmitterKind::Constant { radiance } => {
+                (around(&DAffine3::IDENTITY)?, ProfileSource::Constant(standard::Constant { radiance: *radiance }))
+            }
             EmitterKind::Envmap { image, scale, to_world } => {
-                let [x, y, z] = axes(to_world)?;
                 let tables = EnvironmentTables::new(image.clone(), *scale as Real).ok_or_else(|| {
                     Error::at(&emitter.place, "the environment's image has no pixels", "use an image of at least one pixel")
                 })?;
-                LightSource::Envmap(EnvironmentLight { center, radius, frame: environment_frame(x, y, z), profile: tables })
+                (around(to_world)?, ProfileSource::Envmap(tables))
             }
+            EmitterKind::PluginPoint { to_world, shader } => (point(to_world)?, self.profile(shader)),
+            EmitterKind::PluginEnvironment { to_world, shader } => (around(to_world)?, self.profile(shader)),
         })
     }
 }

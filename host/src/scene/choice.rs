@@ -1,10 +1,17 @@
 //! The choice among lights: for a light walk by power; for a receiver by what reaches it, or, among many lights, by power.
 
-use bidir_kernel::{Chance, Point, Real, Vec3, math, point::Place, real::PI};
+use bidir_kernel::{
+    Chance, Point, Profile, Real, Vec2, Vec3, math,
+    point::Place,
+    real::{INV_PI, PI},
+};
 
-use crate::scene::{
-    extent::{Ellipse, LightExtent, Parallelogram},
-    lights::{LightId, LightSource, SceneLight},
+use crate::{
+    plugin::Sandbox,
+    scene::{
+        extent::{Ellipse, Flat, LightExtent, Parallelogram},
+        lights::{LightId, LightSource, SceneLight, Seat},
+    },
 };
 
 /// Up to this many lights, next event looks at each one from where it stands.
@@ -39,7 +46,7 @@ impl Lights {
             if !shines(power) {
                 continue;
             }
-            if matches!(source, LightSource::Constant(_) | LightSource::Envmap(_)) {
+            if matches!(source.seat, Seat::Environment { .. }) {
                 lights.environment = Some(LightId(lights.sources.len() as u32));
             }
             lights.sources.push(source);
@@ -67,15 +74,15 @@ impl Lights {
 
     /// The light `id`.
     #[inline]
-    pub fn get(&self, id: LightId) -> SceneLight<'_> {
-        self.sources[id.0 as usize].asked()
+    pub fn get<'a>(&'a self, id: LightId, sandbox: &'a Sandbox) -> SceneLight<'a> {
+        self.sources[id.0 as usize].asked(sandbox)
     }
 
     /// Chooses a light for `lit`, or, without one, to start a light walk from.
     #[inline]
-    pub fn pick(&self, lit: Option<&Point>, u: Real) -> Option<(LightId, Chance)> {
+    pub fn pick(&self, lit: Option<&Point>, u: Real, sandbox: &Sandbox) -> Option<(LightId, Chance)> {
         match lit {
-            Some(lit) if self.looks(lit) => self.pick_reaching(lit, u),
+            Some(lit) if self.looks(lit) => self.pick_reaching(lit, u, sandbox),
             _ => {
                 let index = self.cumulative.partition_point(|&sum| sum <= u).min(self.sources.len().checked_sub(1)?);
                 Some((LightId(index as u32), Chance(self.shares[index])))
@@ -85,14 +92,14 @@ impl Lights {
 
     /// The chance that [`Lights::pick`] chooses `id`.
     #[inline]
-    pub fn chance(&self, id: LightId, lit: Option<&Point>) -> Chance {
+    pub fn chance(&self, id: LightId, lit: Option<&Point>, sandbox: &Sandbox) -> Chance {
         match lit {
             Some(lit) if self.looks(lit) => {
                 if self.sources.len() == 1 {
                     return Chance(1.0);
                 }
-                let total: Real = self.sources.iter().map(|source| source.reaching(lit)).sum();
-                Chance(if total > 0.0 { self.sources[id.0 as usize].reaching(lit) / total } else { 0.0 })
+                let total: Real = self.sources.iter().map(|source| source.reaching(lit, sandbox)).sum();
+                Chance(if total > 0.0 { self.sources[id.0 as usize].reaching(lit, sandbox) / total } else { 0.0 })
             }
             _ => Chance(self.shares[id.0 as usize]),
         }
@@ -102,14 +109,14 @@ impl Lights {
         self.sources.len() <= MOST_LOOKED_AT && lit.place != Place::Distant
     }
 
-    fn pick_reaching(&self, lit: &Point, u: Real) -> Option<(LightId, Chance)> {
+    fn pick_reaching(&self, lit: &Point, u: Real, sandbox: &Sandbox) -> Option<(LightId, Chance)> {
         if self.sources.len() == 1 {
             return Some((LightId(0), Chance(1.0)));
         }
         let mut reaching = [0.0; MOST_LOOKED_AT];
         let mut total = 0.0;
         for (slot, source) in reaching.iter_mut().zip(&self.sources) {
-            *slot = source.reaching(lit);
+            *slot = source.reaching(lit, sandbox);
             total += *slot;
         }
         let mut rest = u * total;
@@ -129,23 +136,18 @@ impl Lights {
 
 impl LightSource {
     /// About how much reaches `lit`, W/m², mean of the bands; 0 only where nothing does. What next event chooses by.
-    fn reaching(&self, lit: &Point) -> Real {
-        match self {
-            Self::Area(light) => light.profile.radiance.mean() * solid_angle(&light.extent, lit),
-            Self::Point(light) => light.profile.intensity.mean() / distance_squared(light.position, lit),
-            Self::Spot(light) => {
-                let toward = light.frame.to_local(lit.position - light.position);
-                let angle = math::atan2(math::sqrt(toward.x * toward.x + toward.y * toward.y), toward.z);
-                // A receiver on the rim of the cone may round to outside.
-                if angle > light.profile.cutoff * (1.0 + 1e-4) {
-                    0.0
-                } else {
-                    light.profile.intensity.mean() / distance_squared(light.position, lit)
-                }
+    fn reaching(&self, lit: &Point, sandbox: &Sandbox) -> Real {
+        match &self.seat {
+            Seat::Shape(extent) => self.outflow.exitance as Real * INV_PI * solid_angle(extent, lit),
+            Seat::Point { position, frame } => {
+                let away = lit.position - *position;
+                let Some(direction) = math::normalize(away) else { return 0.0 };
+                let intensity = self.profile.asked(sandbox).eval(Vec2::ZERO, frame.to_local(direction)).radiance.mean();
+                intensity / math::dot(away, away).max(Real::MIN_POSITIVE)
             }
-            Self::Directional(light) => light.irradiance.mean(),
-            Self::Constant(light) => PI * light.profile.radiance.mean(),
-            Self::Envmap(light) => 0.5 * light.profile.total(),
+            // Surroundings are brighter on one side than on the other.
+            Seat::Environment { .. } => 0.5 * self.outflow.total as Real,
+            Seat::Directional(light) => light.irradiance.mean(),
         }
     }
 }
@@ -157,10 +159,12 @@ fn distance_squared(position: Vec3, lit: &Point) -> Real {
 
 /// About the solid angle under which `lit` sees a light's front; 0 only behind a flat one.
 fn solid_angle(extent: &LightExtent, lit: &Point) -> Real {
-    let flat = |center: Vec3, normal: Vec3, area: Real| {
-        let d = lit.position - center;
-        let height = math::dot(d, normal);
-        if height <= 0.0 {
+    let flat = |shape: &Flat| {
+        let area = shape.area;
+        let d = lit.position - shape.center;
+        let height = math::dot(d, shape.frame.z);
+        let height = if shape.both_sides() { height.abs() } else { height };
+        if height <= 0.0 && !shape.both_sides() {
             return 0.0;
         }
         let squared = math::dot(d, d);
@@ -170,9 +174,7 @@ fn solid_angle(extent: &LightExtent, lit: &Point) -> Real {
     };
     let round = |center: Vec3, area: Real| 4.0 * PI * area / (area + 16.0 * PI * distance_squared(center, lit));
     match extent {
-        LightExtent::Parallelogram(Parallelogram(shape)) | LightExtent::Ellipse(Ellipse(shape)) => {
-            flat(shape.center, shape.frame.z, shape.area)
-        }
+        LightExtent::Parallelogram(Parallelogram(shape)) | LightExtent::Ellipse(Ellipse(shape)) => flat(shape),
         LightExtent::Ball(ball) => round(ball.center, extent.area()),
         LightExtent::Tube(tube) => round(tube.base + tube.axis * 0.5, extent.area()),
         LightExtent::Surface(surface) => round(surface.center, extent.area()),
@@ -181,29 +183,35 @@ fn solid_angle(extent: &LightExtent, lit: &Point) -> Real {
 
 #[cfg(test)]
 mod tests {
-    use bidir_kernel::{Frame, Spectrum, light::PointLight};
+    use bidir_kernel::{Frame, Spectrum};
     use bidir_standard::Isotropic;
 
     use super::*;
+    use crate::scene::lights::ProfileSource;
 
-    fn point(intensity: Real) -> LightSource {
-        let profile = Isotropic { intensity: Spectrum::splat(intensity) };
-        LightSource::Point(PointLight { position: Vec3::ZERO, frame: Frame::from_z(Vec3::Z), profile })
+    fn point(intensity: Real, sandbox: &Sandbox) -> LightSource {
+        let profile = ProfileSource::Isotropic(Isotropic { intensity: Spectrum::splat(intensity) });
+        LightSource::new(Seat::Point { position: Vec3::ZERO, frame: Frame::from_z(Vec3::Z) }, profile, sandbox)
+    }
+
+    fn sandbox() -> Sandbox {
+        Sandbox::new(Default::default(), Default::default())
     }
 
     #[test]
     fn what_is_picked_and_what_is_asked_agree_whatever_lights_are_black() {
         let intensities = [0.0, 1.0, 0.0, 1e-12, 3.0, 0.0];
-        let (lights, ids) = Lights::new(intensities.map(point).to_vec());
+        let sandbox = sandbox();
+        let (lights, ids) = Lights::new(intensities.map(|intensity| point(intensity, &sandbox)).to_vec());
         assert_eq!(ids, [None, Some(LightId(0)), None, Some(LightId(1)), Some(LightId(2)), None]);
         let mut total = 0.0;
         for id in 0..3 {
-            let Chance(chance) = lights.chance(LightId(id), None);
+            let Chance(chance) = lights.chance(LightId(id), None, &sandbox);
             // The first and the last number of the light's own.
             let first = f64::from(total);
             total += chance;
             for u in [first, f64::from(total) - 1.0 / STEPS as f64] {
-                assert_eq!(lights.pick(None, u as Real), Some((LightId(id), Chance(chance))), "{u}");
+                assert_eq!(lights.pick(None, u as Real, &sandbox), Some((LightId(id), Chance(chance))), "{u}");
             }
             assert!(chance > 0.0);
         }
@@ -212,8 +220,9 @@ mod tests {
 
     #[test]
     fn many_lights_share_all_the_chance_there_is() {
-        let (lights, _) = Lights::new((0..1000).map(|i| point(if i == 500 { 1e6 } else { 1e-6 })).collect());
-        let sum: f64 = (0..1000).map(|id| f64::from(lights.chance(LightId(id), None).0)).sum();
+        let sandbox = sandbox();
+        let (lights, _) = Lights::new((0..1000).map(|i| point(if i == 500 { 1e6 } else { 1e-6 }, &sandbox)).collect());
+        let sum: f64 = (0..1000).map(|id| f64::from(lights.chance(LightId(id), None, &sandbox).0)).sum();
         assert_eq!(sum, 1.0);
     }
 }

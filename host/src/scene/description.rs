@@ -5,7 +5,7 @@ use std::sync::Arc;
 use bidir_kernel::Spectrum;
 use glam::{DAffine3, DVec2, DVec3};
 
-use crate::error::Place;
+use crate::{error::Place, plugin::Module};
 
 /// Everything a scene file says.
 #[derive(Clone, Debug)]
@@ -269,6 +269,8 @@ pub enum Material {
     },
     /// Lets light pass as if nothing were there.
     Null,
+    /// A module's.
+    Plugin(PluginShader),
     /// One material on each side.
     TwoSided {
         /// Where the normal points.
@@ -293,9 +295,39 @@ impl Material {
                 vec![specular_reflectance, specular_transmittance, alpha_u, alpha_v]
             }
             Self::Plastic { diffuse_reflectance, specular_reflectance, .. } => vec![diffuse_reflectance, specular_reflectance],
+            Self::Plugin(plugin) => plugin.textures.iter().map(|parameter| &parameter.texture).collect(),
             Self::Null | Self::TwoSided { .. } => vec![],
         }
     }
+}
+
+/// A plugin with its parameters.
+#[derive(Clone, Debug)]
+pub struct PluginShader {
+    /// The plugin.
+    pub module: Arc<Module>,
+    /// Its parameters, as it reads them; what a texture decides is not filled in.
+    pub block: Vec<u8>,
+    /// The parameters that vary.
+    pub textures: Vec<TexturedParameter>,
+}
+
+impl PluginShader {
+    /// What scenes call it: its file's name without the ending.
+    pub fn name(&self) -> String {
+        self.module.file().file_stem().unwrap_or_default().to_string_lossy().into_owned()
+    }
+}
+
+/// A plugin's parameter that a texture decides.
+#[derive(Clone, Debug)]
+pub struct TexturedParameter {
+    /// In the parameter block, bytes.
+    pub offset: u32,
+    /// 1, a float: the texture's first band; or 3.
+    pub channels: usize,
+    /// Its value.
+    pub texture: Texture,
 }
 
 /// A shape, its surface and its light.
@@ -305,12 +337,28 @@ pub struct Shape {
     pub geometry: Geometry,
     /// What it is made of.
     pub material: MaterialId,
-    /// Radiance of an area light on it, W/(m² sr).
-    pub radiance: Option<Spectrum>,
+    /// The light on it.
+    pub light: Option<ShapeLight>,
     /// Its id, or its type where it has none; for messages.
     pub name: String,
     /// Where it stands in the file.
     pub place: Place,
+}
+
+/// What leaves every point of a shape.
+#[derive(Clone, Debug)]
+pub enum ShapeLight {
+    /// The same radiance in every direction of the side that it faces, W/(m² sr).
+    Area(Spectrum),
+    /// What a plugin says.
+    Plugin(PluginShader),
+}
+
+impl ShapeLight {
+    /// Whether it can be seen at all, as far as the scene says.
+    pub fn is_black(&self) -> bool {
+        matches!(self, Self::Area(radiance) if radiance.is_black())
+    }
 }
 
 /// Forms, in their own coordinates.
@@ -429,6 +477,27 @@ pub enum EmitterKind {
         /// Local → world; up is y.
         to_world: DAffine3,
     },
+    /// A plugin at a point; z is its axis.
+    PluginPoint {
+        /// Local → world.
+        to_world: DAffine3,
+        /// What it sends where.
+        shader: PluginShader,
+    },
+    /// A plugin all around.
+    PluginEnvironment {
+        /// Local → world; up is y.
+        to_world: DAffine3,
+        /// What it sends where.
+        shader: PluginShader,
+    },
+}
+
+impl EmitterKind {
+    /// Whether rays that escape land on it.
+    pub fn is_environment(&self) -> bool {
+        matches!(self, Self::Constant { .. } | Self::Envmap { .. } | Self::PluginEnvironment { .. })
+    }
 }
 
 /// Pixels of an environment, linear, finite and not negative.

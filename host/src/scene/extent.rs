@@ -42,6 +42,8 @@ pub struct Flat {
     pub frame: Frame,
     /// In the world's unit, squared.
     pub area: Real,
+    /// Whether it shines behind its normal too.
+    both_sides: bool,
     /// Bounds the rounding error of any of its points along the normal.
     offset: Real,
     per_area: PerArea,
@@ -54,16 +56,21 @@ impl Flat {
         let normal = math::normalize(cross).unwrap_or(Vec3::Z) * facing;
         let area = share * math::sqrt(math::dot(cross, cross));
         let offset = rounding(center.abs() + a.abs() + b.abs(), normal);
-        Self { center, a, b, frame: Frame::from_z_and_tangent(normal, a), area, offset, per_area: PerArea(1.0 / area) }
+        Self { center, a, b, frame: Frame::from_z_and_tangent(normal, a), area, both_sides: false, offset, per_area: PerArea(1.0 / area) }
     }
 
     fn at(&self, x: Real, y: Real, uv: Vec2) -> Point {
         Point::surface(self.center + self.a * x + self.b * y, self.frame.z, self.frame, uv, self.offset)
     }
 
-    /// Whether `lit` lies on the side that the figure faces; only there does it shine.
+    /// Whether the figure shines where `lit` lies.
     fn faces(&self, lit: &Point) -> bool {
-        math::dot(lit.position - self.center, self.frame.z) > 0.0
+        self.both_sides || math::dot(lit.position - self.center, self.frame.z) > 0.0
+    }
+
+    /// Whether it shines behind its normal too.
+    pub fn both_sides(&self) -> bool {
+        self.both_sides
     }
 }
 
@@ -84,6 +91,8 @@ pub struct Ball {
     pub radius: Real,
     /// Its normals point outwards: 1, inwards: −1.
     pub outward: Real,
+    /// Whether it shines behind its normals too.
+    pub both_sides: bool,
 }
 
 /// The side of a circular cylinder.
@@ -123,6 +132,17 @@ impl Surface {
 }
 
 impl LightExtent {
+    /// The same extent, of a light that shines behind its normals too.
+    pub fn shining_both_ways(self) -> Self {
+        match self {
+            Self::Parallelogram(Parallelogram(flat)) => Self::Parallelogram(Parallelogram(Flat { both_sides: true, ..flat })),
+            Self::Ellipse(Ellipse(flat)) => Self::Ellipse(Ellipse(Flat { both_sides: true, ..flat })),
+            Self::Ball(ball) => Self::Ball(Ball { both_sides: true, ..ball }),
+            // These are sampled all over for whoever asks.
+            other @ (Self::Tube(_) | Self::Surface(_)) => other,
+        }
+    }
+
     /// In the world's unit, squared.
     pub fn area(&self) -> Real {
         match self {
@@ -197,9 +217,9 @@ impl Ball {
     }
 
     /// 1 − cos of the cone in which `lit` sees the ball, and the squared sine; `None` from inside.
-    /// A ball that faces inwards is seen from inside only, from its own surface too, wherever that rounds to.
+    /// A ball that shines inwards is seen from inside, from its own surface too, wherever that rounds to.
     fn cone(&self, lit: &Point) -> Option<(Real, Real)> {
-        if self.outward < 0.0 {
+        if self.outward < 0.0 || self.both_sides {
             return None;
         }
         let to_center = self.center - lit.position;

@@ -1,16 +1,25 @@
-//! Every kind of light that a scene can have.
+//! Every kind of light that a scene can have: a profile (what is sent where) on a shape, at a point or all around, or parallel rays.
 
 use std::sync::Arc;
 
 use bidir_kernel::{
-    Emission, EndDensity, Exit, Frame, Illumination, Light, Point, Real, Spectrum, Vec3,
+    Emission, Emitted, EndDensity, Exit, Frame, Illumination, Light, Point, Profile, Real, Spectrum, Vec2, Vec3,
     light::{AreaLight, EnvironmentLight, PointLight},
     math,
+    profile::Profiled,
     real::PI,
 };
 use bidir_standard as standard;
 
-use crate::scene::{description::EnvironmentImage, extent::LightExtent};
+use crate::{
+    plugin::{Sandbox, ShaderId},
+    scene::{
+        description::{EnvironmentImage, TexturedParameter},
+        extent::LightExtent,
+        outflow::Outflow,
+        surface::set_textured,
+    },
+};
 
 /// A light's name: its index.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -18,19 +27,66 @@ pub struct LightId(pub u32);
 
 /// A light as it is kept.
 #[derive(Clone, Debug)]
-pub enum LightSource {
-    /// On a shape.
-    Area(AreaLight<LightExtent, standard::Area>),
-    /// At a point, alike in every direction.
-    Point(PointLight<standard::Isotropic>),
-    /// At a point, in a cone.
-    Spot(PointLight<standard::Spot>),
-    /// Parallel.
+pub struct LightSource {
+    /// Where it shines from.
+    pub seat: Seat,
+    /// What it sends where.
+    pub profile: ProfileSource,
+    /// How much that is.
+    pub outflow: Outflow,
+}
+
+/// Where a light shines from.
+#[derive(Clone, Debug)]
+pub enum Seat {
+    /// Every point of a shape.
+    Shape(LightExtent),
+    /// One point.
+    Point {
+        /// In the world.
+        position: Vec3,
+        /// z is the profile's axis.
+        frame: Frame,
+    },
+    /// All around.
+    Environment {
+        /// Of a sphere that holds the whole scene.
+        center: Vec3,
+        /// Of that sphere.
+        radius: Real,
+        /// z is up.
+        frame: Frame,
+    },
+    /// Infinitely far away in one direction; it has no profile to speak of.
     Directional(standard::Directional),
-    /// From everywhere alike.
-    Constant(EnvironmentLight<standard::Constant>),
+}
+
+/// What a light sends where, as it is kept.
+#[derive(Clone, Debug)]
+pub enum ProfileSource {
+    /// The same radiance in every direction of a hemisphere.
+    Area(standard::Area),
+    /// The same intensity in every direction.
+    Isotropic(standard::Isotropic),
+    /// A cone.
+    Spot(standard::Spot),
+    /// The same radiance from everywhere.
+    Constant(standard::Constant),
     /// An image.
-    Envmap(EnvironmentLight<EnvironmentTables>),
+    Envmap(EnvironmentTables),
+    /// A module's.
+    Plugin(PluginProfile),
+}
+
+/// A module's emission profile.
+#[derive(Clone, Debug)]
+pub struct PluginProfile {
+    /// In the scene's roster.
+    pub id: ShaderId,
+    /// The parameters that vary over the shape.
+    pub textures: Vec<TexturedParameter>,
+    /// What scenes call the module.
+    pub name: String,
 }
 
 /// An environment's image with its sampling tables.
@@ -70,63 +126,137 @@ impl EnvironmentTables {
     }
 }
 
+/// A profile as a path asks it.
+#[derive(Clone, Copy, Debug)]
+pub enum SceneProfile<'a> {
+    /// The same radiance in every direction of a hemisphere.
+    Area(standard::Area),
+    /// The same intensity in every direction.
+    Isotropic(standard::Isotropic),
+    /// A cone.
+    Spot(standard::Spot),
+    /// The same radiance from everywhere.
+    Constant(standard::Constant),
+    /// An image.
+    Envmap(standard::Envmap<'a>),
+    /// A module's, in this thread's sandbox.
+    Plugin(&'a PluginProfile, &'a Sandbox),
+}
+
+impl ProfileSource {
+    /// The profile as a path asks it.
+    #[inline]
+    pub fn asked<'a>(&'a self, sandbox: &'a Sandbox) -> SceneProfile<'a> {
+        match self {
+            Self::Area(profile) => SceneProfile::Area(*profile),
+            Self::Isotropic(profile) => SceneProfile::Isotropic(*profile),
+            Self::Spot(profile) => SceneProfile::Spot(*profile),
+            Self::Constant(profile) => SceneProfile::Constant(*profile),
+            // Tables are only ever made to fit; an environment without any is black.
+            Self::Envmap(tables) => {
+                tables.profile().map_or(SceneProfile::Constant(standard::Constant { radiance: Spectrum::BLACK }), SceneProfile::Envmap)
+            }
+            Self::Plugin(profile) => SceneProfile::Plugin(profile, sandbox),
+        }
+    }
+}
+
+macro_rules! of_profile {
+    ($self:ident, $uv:ident, $profile:ident => $call:expr) => {
+        match $self {
+            SceneProfile::Area($profile) => $call,
+            SceneProfile::Isotropic($profile) => $call,
+            SceneProfile::Spot($profile) => $call,
+            SceneProfile::Constant($profile) => $call,
+            SceneProfile::Envmap($profile) => $call,
+            SceneProfile::Plugin(plugin, sandbox) => {
+                set_textured(sandbox, plugin.id, &plugin.textures, $uv);
+                let $profile = sandbox.profile(plugin.id);
+                $call
+            }
+        }
+    };
+}
+
+impl Profile for SceneProfile<'_> {
+    #[inline]
+    fn eval(&self, uv: Vec2, direction: Vec3) -> Profiled {
+        of_profile!(self, uv, profile => profile.eval(uv, direction))
+    }
+
+    #[inline]
+    fn emit(&self, uv: Vec2, u: [Real; 2]) -> Option<Emitted> {
+        of_profile!(self, uv, profile => profile.emit(uv, u))
+    }
+}
+
 /// A light as a path asks it.
 #[derive(Clone, Copy, Debug)]
 pub enum SceneLight<'a> {
     /// On a shape.
-    Area(AreaLight<&'a LightExtent, standard::Area>),
-    /// At a point, alike in every direction.
-    Point(PointLight<standard::Isotropic>),
-    /// At a point, in a cone.
-    Spot(PointLight<standard::Spot>),
+    Area(AreaLight<&'a LightExtent, SceneProfile<'a>>),
+    /// At a point.
+    Point(PointLight<SceneProfile<'a>>),
+    /// All around.
+    Environment(EnvironmentLight<SceneProfile<'a>>),
     /// Parallel.
     Directional(standard::Directional),
-    /// From everywhere alike.
-    Constant(EnvironmentLight<standard::Constant>),
-    /// An image.
-    Envmap(EnvironmentLight<standard::Envmap<'a>>),
 }
 
 impl LightSource {
+    /// A light with a profile, and how much that sends: whoever asks a plugin for that asks it in `sandbox`.
+    pub fn new(seat: Seat, profile: ProfileSource, sandbox: &Sandbox) -> Self {
+        let outflow = match (&seat, &profile) {
+            (Seat::Directional(light), _) => Outflow { total: f64::from(light.irradiance.mean()), ..Outflow::NONE },
+            (_, ProfileSource::Envmap(tables)) => Outflow { total: f64::from(tables.total()), ..Outflow::NONE },
+            _ => Outflow::of(&profile.asked(sandbox)),
+        };
+        let seat = match seat {
+            Seat::Shape(extent) if outflow.both_sides => Seat::Shape(extent.shining_both_ways()),
+            other => other,
+        };
+        Self { seat, profile, outflow }
+    }
+
     /// The light as a path asks it.
     #[inline]
-    pub fn asked(&self) -> SceneLight<'_> {
-        match self {
-            Self::Area(light) => SceneLight::Area(AreaLight { extent: &light.extent, profile: light.profile }),
-            Self::Point(light) => SceneLight::Point(*light),
-            Self::Spot(light) => SceneLight::Spot(*light),
-            Self::Directional(light) => SceneLight::Directional(*light),
-            Self::Constant(light) => SceneLight::Constant(*light),
-            Self::Envmap(light) => match light.profile.profile() {
-                Some(profile) => {
-                    SceneLight::Envmap(EnvironmentLight { center: light.center, radius: light.radius, frame: light.frame, profile })
-                }
-                // Tables are only ever made to fit; an environment without any is black.
-                None => SceneLight::Constant(EnvironmentLight {
-                    center: light.center,
-                    radius: light.radius,
-                    frame: light.frame,
-                    profile: standard::Constant { radiance: Spectrum::BLACK },
-                }),
-            },
+    pub fn asked<'a>(&'a self, sandbox: &'a Sandbox) -> SceneLight<'a> {
+        match &self.seat {
+            Seat::Shape(extent) => SceneLight::Area(AreaLight { extent, profile: self.profile.asked(sandbox) }),
+            Seat::Point { position, frame } => {
+                SceneLight::Point(PointLight { position: *position, frame: *frame, profile: self.profile.asked(sandbox) })
+            }
+            Seat::Environment { center, radius, frame } => SceneLight::Environment(EnvironmentLight {
+                center: *center,
+                radius: *radius,
+                frame: *frame,
+                profile: self.profile.asked(sandbox),
+            }),
+            Seat::Directional(light) => SceneLight::Directional(*light),
         }
     }
 
     /// Power in W, mean of the bands: what a light walk chooses by. f64, since areas and radiances near the ends of f32 multiply.
     pub fn power(&self) -> f64 {
-        let pi = std::f64::consts::PI;
-        let disk = |radius: Real| pi * f64::from(radius) * f64::from(radius);
-        match self {
-            Self::Area(light) => pi * f64::from(light.extent.area()) * f64::from(light.profile.radiance.mean()),
-            Self::Point(light) => 4.0 * pi * f64::from(light.profile.intensity.mean()),
-            Self::Spot(light) => {
-                let spot = &light.profile;
-                let half = 0.5 * (spot.cutoff + spot.beam_width);
-                2.0 * pi * f64::from(1.0 - math::cos(half)) * f64::from(spot.intensity.mean())
-            }
-            Self::Directional(light) => disk(light.radius) * f64::from(light.irradiance.mean()),
-            Self::Constant(light) => disk(light.radius) * 4.0 * pi * f64::from(light.profile.radiance.mean()),
-            Self::Envmap(light) => disk(light.radius) * f64::from(light.profile.total()),
+        let disk = |radius: Real| std::f64::consts::PI * f64::from(radius) * f64::from(radius);
+        match &self.seat {
+            Seat::Shape(extent) => f64::from(extent.area()) * self.outflow.exitance,
+            Seat::Point { .. } => self.outflow.total,
+            Seat::Environment { radius, .. } => disk(*radius) * self.outflow.total,
+            Seat::Directional(light) => disk(light.radius) * self.outflow.total,
+        }
+    }
+
+    /// What scenes call it.
+    pub fn kind(&self) -> &str {
+        match (&self.seat, &self.profile) {
+            (Seat::Directional(_), _) => "directional",
+            (_, ProfileSource::Area(_)) => "area",
+            (_, ProfileSource::Isotropic(_)) => "point",
+            (_, ProfileSource::Spot(_)) => "spot",
+            (_, ProfileSource::Constant(_)) => "constant",
+            (_, ProfileSource::Envmap(_)) => "envmap",
+            (_, ProfileSource::Plugin(plugin)) => &plugin.name,
         }
     }
 }
@@ -136,10 +266,8 @@ macro_rules! of_light {
         match $self {
             SceneLight::Area($light) => $call,
             SceneLight::Point($light) => $call,
-            SceneLight::Spot($light) => $call,
+            SceneLight::Environment($light) => $call,
             SceneLight::Directional($light) => $call,
-            SceneLight::Constant($light) => $call,
-            SceneLight::Envmap($light) => $call,
         }
     };
 }

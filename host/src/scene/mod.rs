@@ -6,12 +6,18 @@ pub mod choice;
 pub mod description;
 pub mod extent;
 pub mod lights;
+pub mod outflow;
 pub mod shape;
 pub mod surface;
 pub mod texture;
 pub mod view;
 
-use crate::rays::{BuildStats, Bvh};
+use std::sync::Arc;
+
+use crate::{
+    plugin::Roster,
+    rays::{BuildStats, Bvh},
+};
 use camera::SceneCamera;
 use choice::Lights;
 use shape::Shape;
@@ -27,6 +33,7 @@ pub struct Scene {
     shapes: Vec<Shape>,
     finishes: Vec<Finish>,
     lights: Lights,
+    roster: Arc<Roster>,
     hides_emitters: bool,
     degenerate: usize,
 }
@@ -40,6 +47,11 @@ impl Scene {
     /// What building the tree took.
     pub fn build_stats(&self) -> BuildStats {
         self.geometry.stats()
+    }
+
+    /// The plugins.
+    pub fn roster(&self) -> &Roster {
+        &self.roster
     }
 
     /// The lights.

@@ -1,9 +1,12 @@
-//! A shape's surface at a hit: a built-in shader with its parameters looked up, one on each side.
+//! A shape's surface at a hit: a shader with its parameters looked up, one on each side.
 
 use bidir_kernel::{Bsdf, Carried, Lobe, Real, Scatter, Scattered, Vec2, Vec3};
 use bidir_standard as standard;
 
-use crate::scene::description::{Distribution, Material, MaterialId, Texture};
+use crate::{
+    plugin::{Roster, Sandbox, ShaderId},
+    scene::description::{Distribution, Material, MaterialId, PluginShader, Texture, TexturedParameter},
+};
 
 /// A built-in shader, ready to be asked.
 #[derive(Clone, Copy, Debug)]
@@ -58,18 +61,25 @@ impl Bsdf for Shader {
     }
 }
 
-/// A surface at a point: its finish, asked where the point lies. It is two words, so that vertices stay cheap to move;
+/// A surface at a point: its finish, asked where the point lies. It is three words, so that vertices stay cheap to move;
 /// a finish without textures has its shader ready, others look theirs up when they are asked.
 #[derive(Clone, Copy, Debug)]
 pub struct Surface<'a> {
     finish: &'a Finish,
+    sandbox: &'a Sandbox,
     uv: Vec2,
 }
 
+/// What is asked of a shader, whichever it is; `turn` is −1 where it sees z turned round.
+trait Question {
+    type Answer;
+    fn put(self, shader: &impl Bsdf, turn: Real) -> Self::Answer;
+}
+
 impl Surface<'_> {
-    /// Asks the shader that ω_o meets; the second argument is −1 where that one sees z turned round.
+    /// Asks the shader that ω_o meets.
     #[inline(always)]
-    fn ask<T>(&self, wo: Vec3, question: impl FnOnce(&Shader, Real) -> T) -> T {
+    fn ask<Q: Question>(&self, wo: Vec3, question: Q) -> Q::Answer {
         let Finish { front, behind } = self.finish;
         let (recipe, turn) = match behind {
             _ if wo.z >= 0.0 => (front, 1.0),
@@ -77,10 +87,47 @@ impl Surface<'_> {
             Behind::Mirrored => (front, -1.0),
             Behind::Other(recipe) => (&**recipe, -1.0),
         };
-        match &recipe.fixed {
-            Some(shader) => question(shader, turn),
-            None => question(&recipe.looked_up(self.uv), turn),
+        match &recipe.shader {
+            Ready::Fixed(shader) => question.put(shader, turn),
+            Ready::Plugin(id) => {
+                if let Material::Plugin(PluginShader { textures, .. }) = &recipe.material {
+                    set_textured(self.sandbox, *id, textures, self.uv);
+                }
+                question.put(&self.sandbox.bsdf(*id), turn)
+            }
+            Ready::Varying => question.put(&recipe.looked_up(self.uv), turn),
         }
+    }
+}
+
+struct Eval {
+    wo: Vec3,
+    wi: Vec3,
+    carried: Carried,
+}
+
+impl Question for Eval {
+    type Answer = Scatter;
+
+    #[inline(always)]
+    fn put(self, shader: &impl Bsdf, turn: Real) -> Scatter {
+        shader.eval(turned(self.wo, turn), turned(self.wi, turn), self.carried)
+    }
+}
+
+struct Sample {
+    wo: Vec3,
+    u: [Real; 3],
+    carried: Carried,
+}
+
+impl Question for Sample {
+    type Answer = Option<Scattered>;
+
+    #[inline(always)]
+    fn put(self, shader: &impl Bsdf, turn: Real) -> Option<Scattered> {
+        let scattered = shader.sample(turned(self.wo, turn), self.u, self.carried)?;
+        Some(Scattered { wi: turned(scattered.wi, turn), ..scattered })
     }
 }
 
@@ -92,23 +139,17 @@ fn turned(w: Vec3, turn: Real) -> Vec3 {
 impl Bsdf for Surface<'_> {
     #[inline]
     fn eval(&self, wo: Vec3, wi: Vec3, carried: Carried) -> Scatter {
-        self.ask(wo, |shader, turn| shader.eval(turned(wo, turn), turned(wi, turn), carried))
+        self.ask(wo, Eval { wo, wi, carried })
     }
 
     #[inline]
     fn sample(&self, wo: Vec3, u: [Real; 3], carried: Carried) -> Option<Scattered> {
-        self.ask(wo, |shader, turn| {
-            let scattered = shader.sample(turned(wo, turn), u, carried)?;
-            Some(Scattered { wi: turned(scattered.wi, turn), ..scattered })
-        })
+        self.ask(wo, Sample { wo, u, carried })
     }
 
     #[inline]
     fn lobes(&self) -> Lobe {
-        match &self.finish.behind {
-            Behind::Other(recipe) => self.finish.front.lobes(self.uv) | recipe.lobes(self.uv),
-            _ => self.finish.front.lobes(self.uv),
-        }
+        self.finish.lobes_at(self.uv)
     }
 }
 
@@ -131,49 +172,68 @@ enum Behind {
     Other(Box<Recipe>),
 }
 
+/// A shader, as far as it is known before any hit.
+#[derive(Clone, Copy, Debug)]
+enum Ready {
+    /// A built-in one whose parameters are the same everywhere.
+    Fixed(Shader),
+    /// A built-in one whose parameters a texture decides.
+    Varying,
+    /// A module's.
+    Plugin(ShaderId),
+}
+
 #[derive(Clone, Debug)]
 struct Recipe {
     material: Material,
-    /// Set once if no texture varies.
-    fixed: Option<Shader>,
     inner_reflectance: Real,
+    shader: Ready,
 }
 
 impl Finish {
-    /// The finish of material `id`; `None` if an id names nothing, or a `TwoSided` holds another.
-    pub fn new(materials: &[Material], id: MaterialId) -> Option<Self> {
+    /// The finish of material `id`, its plugins added to `roster`; `None` if an id names nothing, or a `TwoSided` holds another.
+    pub fn new(materials: &[Material], id: MaterialId, roster: &mut Roster) -> Option<Self> {
         let material = |id: MaterialId| materials.get(id.0 as usize);
         Some(match material(id)? {
             Material::TwoSided { front, back } if front == back => {
-                Self { front: Recipe::new(material(*front)?)?, behind: Behind::Mirrored }
+                Self { front: Recipe::new(material(*front)?, roster)?, behind: Behind::Mirrored }
             }
-            Material::TwoSided { front, back } => {
-                Self { front: Recipe::new(material(*front)?)?, behind: Behind::Other(Box::new(Recipe::new(material(*back)?)?)) }
-            }
-            one => Self { front: Recipe::new(one)?, behind: Behind::Itself },
+            Material::TwoSided { front, back } => Self {
+                front: Recipe::new(material(*front)?, roster)?,
+                behind: Behind::Other(Box::new(Recipe::new(material(*back)?, roster)?)),
+            },
+            one => Self { front: Recipe::new(one, roster)?, behind: Behind::Itself },
         })
     }
 
-    /// The surface at `uv`.
+    /// The surface at `uv`, whose plugins, if there are any, are asked in `sandbox`.
     #[inline(always)]
-    pub fn at(&self, uv: Vec2) -> Surface<'_> {
-        Surface { finish: self, uv }
+    pub fn at<'a>(&'a self, uv: Vec2, sandbox: &'a Sandbox) -> Surface<'a> {
+        Surface { finish: self, sandbox, uv }
     }
 
     /// Whether anything varies over the surface, or about its normal: then hits need uv, and frames that follow u.
     pub fn mapped(&self) -> bool {
-        let mapped = |recipe: &Recipe| recipe.fixed.is_none() || recipe.anisotropic();
+        let mapped = |recipe: &Recipe| recipe.varies() || recipe.anisotropic();
         mapped(&self.front) || matches!(&self.behind, Behind::Other(recipe) if mapped(recipe))
     }
 
     /// Every lobe the surface has at uv (0, 0), for what `explain` says of it.
     pub fn lobes(&self) -> Lobe {
-        self.at(Vec2::ZERO).lobes()
+        self.lobes_at(Vec2::ZERO)
+    }
+
+    #[inline]
+    fn lobes_at(&self, uv: Vec2) -> Lobe {
+        match &self.behind {
+            Behind::Other(recipe) => self.front.lobes(uv) | recipe.lobes(uv),
+            _ => self.front.lobes(uv),
+        }
     }
 }
 
 impl Recipe {
-    fn new(material: &Material) -> Option<Self> {
+    fn new(material: &Material, roster: &mut Roster) -> Option<Self> {
         if matches!(material, Material::TwoSided { .. }) {
             return None;
         }
@@ -181,31 +241,38 @@ impl Recipe {
             Material::Plastic { eta, .. } => standard::Plastic::inner_reflectance(*eta),
             _ => 0.0,
         };
-        let mut recipe = Self { material: material.clone(), fixed: None, inner_reflectance };
-        if recipe.material.textures().iter().all(|texture| matches!(texture, Texture::Constant(_))) {
-            recipe.fixed = Some(recipe.looked_up(Vec2::ZERO));
+        let mut recipe = Self { material: material.clone(), inner_reflectance, shader: Ready::Varying };
+        if let Material::Plugin(shader) = material {
+            recipe.shader = Ready::Plugin(roster.add(&shader.module, &shader.block));
+        } else if !recipe.varies() {
+            recipe.shader = Ready::Fixed(recipe.looked_up(Vec2::ZERO));
         }
         Some(recipe)
     }
 
+    fn varies(&self) -> bool {
+        self.material.textures().iter().any(|texture| !matches!(texture, Texture::Constant(_)))
+    }
+
+    /// Whether it may matter which way the tangent points. Asked of the kind of material, as a module's manifest is.
     fn anisotropic(&self) -> bool {
-        let differ = |u: &Texture, v: &Texture| !matches!((u, v), (Texture::Constant(u), Texture::Constant(v)) if u[0] == v[0]);
         match &self.material {
-            Material::RoughConductor { alpha_u, alpha_v, .. } | Material::RoughDielectric { alpha_u, alpha_v, .. } => {
-                differ(alpha_u, alpha_v)
-            }
+            Material::RoughConductor { .. } | Material::RoughDielectric { .. } => true,
+            Material::Plugin(shader) => !shader.module.manifest().isotropic,
             _ => false,
         }
     }
 
     #[inline]
     fn lobes(&self, uv: Vec2) -> Lobe {
-        match &self.fixed {
-            Some(shader) => shader.lobes(),
-            None => self.looked_up(uv).lobes(),
+        match (&self.shader, &self.material) {
+            (Ready::Fixed(shader), _) => shader.lobes(),
+            (_, Material::Plugin(shader)) => shader.module.manifest().lobes(),
+            _ => self.looked_up(uv).lobes(),
         }
     }
 
+    /// A built-in shader at `uv`.
     fn looked_up(&self, uv: Vec2) -> Shader {
         match &self.material {
             Material::Diffuse { reflectance } => Shader::Diffuse(standard::Diffuse { reflectance: reflectance.at(uv) }),
@@ -247,8 +314,16 @@ impl Recipe {
                 nonlinear: *nonlinear,
                 inner_reflectance: self.inner_reflectance,
             }),
-            Material::Null | Material::TwoSided { .. } => Shader::Null(standard::Null),
+            Material::Null | Material::Plugin(_) | Material::TwoSided { .. } => Shader::Null(standard::Null),
         }
+    }
+}
+
+/// Looks the textures of a plugin's parameters up.
+#[inline]
+pub(super) fn set_textured(sandbox: &Sandbox, id: ShaderId, textures: &[TexturedParameter], uv: Vec2) {
+    if !textures.is_empty() {
+        sandbox.set(id, textures.iter().map(|parameter| (parameter.offset, parameter.texture.at(uv), parameter.channels)));
     }
 }
 

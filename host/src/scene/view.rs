@@ -1,10 +1,11 @@
 //! The scene as one render thread sees it.
 
-use std::cell::Cell;
+use std::{cell::Cell, sync::Arc};
 
 use bidir_kernel::{Chance, Point, Ray, Real, Segment};
 
 use crate::{
+    plugin::{Sandbox, Strictness},
     rays::Geometry,
     scene::{
         Scene,
@@ -30,18 +31,26 @@ impl std::ops::AddAssign for RayCounts {
     }
 }
 
-/// One thread's view of the shared scene; it counts that thread's rays.
+/// One thread's view of the shared scene; it holds that thread's plugins and counts its rays.
 #[derive(Debug)]
 pub struct View<'a> {
     scene: &'a Scene,
+    sandbox: Sandbox,
     closest: Cell<u64>,
     any: Cell<u64>,
 }
 
 impl<'a> View<'a> {
     /// A view with nothing counted yet.
-    pub fn new(scene: &'a Scene) -> Self {
-        Self { scene, closest: Cell::new(0), any: Cell::new(0) }
+    pub fn new(scene: &'a Scene, strictness: Strictness) -> Self {
+        let sandbox = Sandbox::new(Arc::clone(&scene.roster), strictness);
+        Self { scene, sandbox, closest: Cell::new(0), any: Cell::new(0) }
+    }
+
+    /// This thread's plugins.
+    #[inline]
+    pub fn sandbox(&self) -> &Sandbox {
+        &self.sandbox
     }
 
     /// The rays cast through this view.
@@ -91,12 +100,12 @@ impl bidir_kernel::Scene for View<'_> {
 
     #[inline]
     fn bsdf(&self, point: &Point, hit: Hit) -> Surface<'_> {
-        self.scene.finishes[self.scene.shapes[hit.shape as usize].finish as usize].at(point.uv)
+        self.scene.finishes[self.scene.shapes[hit.shape as usize].finish as usize].at(point.uv, &self.sandbox)
     }
 
     #[inline]
     fn light(&self, id: LightId) -> SceneLight<'_> {
-        self.scene.lights.get(id)
+        self.scene.lights.get(id, &self.sandbox)
     }
 
     #[inline]
@@ -111,12 +120,12 @@ impl bidir_kernel::Scene for View<'_> {
 
     #[inline]
     fn pick_light(&self, lit: Option<&Point>, u: Real) -> Option<(LightId, Chance)> {
-        self.scene.lights.pick(lit, u)
+        self.scene.lights.pick(lit, u, &self.sandbox)
     }
 
     #[inline]
     fn light_chance(&self, id: LightId, lit: Option<&Point>) -> Chance {
-        self.scene.lights.chance(id, lit)
+        self.scene.lights.chance(id, lit, &self.sandbox)
     }
 
     #[inline]

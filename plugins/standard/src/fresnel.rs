@@ -2,7 +2,7 @@
 
 use bidir_sdk::{
     Real, Spectrum,
-    math::{ln, safe_sqrt, sqr, sqrt},
+    math::{ln, max, min, safe_sqrt, sqr, sqrt},
 };
 
 /// What a boundary between two dielectrics does to one direction.
@@ -47,7 +47,7 @@ pub fn dielectric(cos: Real, index: RelativeIndex) -> Boundary {
         return Boundary { reflectance: 1.0, cos_refracted: 0.0 };
     }
     let g = sqrt(squared);
-    Boundary { reflectance: amplitudes(cos, g, index), cos_refracted: (g / index.eta).min(1.0) }
+    Boundary { reflectance: amplitudes(cos, g, index), cos_refracted: min(g / index.eta, 1.0) }
 }
 
 /// The reflectance where both cosines, on the near side and on the far one, are known: it is the same from both sides
@@ -62,7 +62,7 @@ fn amplitudes(cos: Real, g: Real, index: RelativeIndex) -> Real {
     let inverse = 1.0 / (cos + g);
     let s = index.excess * sqr(inverse);
     let p = index.excess * (cos - inverse) / (sqr(index.eta) * cos + g);
-    (0.5 * (sqr(s) + sqr(p))).min(1.0)
+    min(0.5 * (sqr(s) + sqr(p)), 1.0)
 }
 
 /// The chance with which shaders pick reflection over refraction: the reflectance, unless one of the two is black.
@@ -89,7 +89,7 @@ pub fn conductor(cos: Real, eta: Spectrum, k: Spectrum) -> Spectrum {
 #[inline]
 fn conductor_band(cos: Real, eta: Real, k: Real) -> Real {
     let cos2 = sqr(cos);
-    let sin2 = (1.0 - cos2).max(0.0);
+    let sin2 = max(1.0 - cos2, 0.0);
     let real = (eta - k) * (eta + k) - sin2;
     let a2_plus_b2 = sqrt(sqr(real) + 4.0 * sqr(eta * k));
     let twice_a_cos = 2.0 * cos * safe_sqrt(0.5 * (a2_plus_b2 + real));
@@ -101,7 +101,7 @@ fn conductor_band(cos: Real, eta: Real, k: Real) -> Real {
 /// (x − y)/(x + y); 1 for 0/0.
 #[inline(always)]
 fn ratio(x: Real, y: Real) -> Real {
-    if x + y > 0.0 { ((x - y) / (x + y)).max(0.0) } else { 1.0 }
+    if x + y > 0.0 { max((x - y) / (x + y), 0.0) } else { 1.0 }
 }
 
 /// 2 ∫ R(c) c dc: the reflectance of a dielectric boundary under light from everywhere on one side,

@@ -23,6 +23,10 @@
 //!
 //! Surfaces live in the shading frame of [`bidir_sdk::Bsdf`]. Those without transmission scatter only on the
 //! side that the normal points to. The definitions are those of Mitsuba 3, so that one scene gives one image in both.
+//!
+//! Each of them that fits ABI 1.0 is also built as a module of its own, from `modules/`: the same code on the same
+//! numbers, so the same image to the last bit. Two do not fit: [`Directional`], since a profile of the ABI has no deltas,
+//! and [`Envmap`], since a plugin is given numbers and no images.
 #![no_std]
 #![allow(clippy::neg_cmp_op_on_partial_ord, reason = "`!(x > 0.0)` refuses NaN too")]
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use bidir_sdk::{
     Real, Vec3,
-    math::{dot, erfc, exp, ln, normalize, sin_cos, sqr, sqrt, vec3},
+    math::{dot, erfc, exp, ln, max, min, normalize, safe_sqrt, sin_cos, sqr, sqrt, vec3},
     real::{INV_PI, PI},
 };
 
@@ -37,6 +37,13 @@ impl Microfacet {
     /// so that both make the same decision.
     pub const LEAST: Real = 6e-5;
 
+    /// With the roughness `alpha` along x and y, but for what of `alpha_u` and `alpha_v` is not negative.
+    #[inline(always)]
+    pub fn with_alphas(distribution: Distribution, alpha: Real, alpha_u: Real, alpha_v: Real) -> Self {
+        let along = |own: Real| if own < 0.0 { alpha } else { own };
+        Self { distribution, alpha_u: along(alpha_u), alpha_v: along(alpha_v) }
+    }
+
     /// Whether the roughness is too little to be told from a smooth surface (0 and NaN included).
     #[inline(always)]
     pub fn is_smooth(&self) -> bool {
@@ -46,12 +53,12 @@ impl Microfacet {
     /// The larger roughness.
     #[inline(always)]
     pub fn largest_alpha(&self) -> Real {
-        self.alpha_u.max(self.alpha_v)
+        max(self.alpha_u, self.alpha_v)
     }
 
     #[inline(always)]
     fn alphas(&self) -> (Real, Real) {
-        (self.alpha_u.max(Self::LEAST), self.alpha_v.max(Self::LEAST))
+        (max(self.alpha_u, Self::LEAST), max(self.alpha_v, Self::LEAST))
     }
 
     /// D(m), microfacet area per steradian of normals and unit of surface: ∫ D cos = 1. `m` is a unit vector; 0 below.
@@ -113,7 +120,7 @@ fn visible_hemisphere(w: Vec3, u: [Real; 2]) -> Vec3 {
     let up = (1.0 - u[1]) * (1.0 + w.z);
     // 1 + cos of the cap direction, with 1 − w.z from its sine.
     let above = up + (sqr(w.x) + sqr(w.y)) / (1.0 + w.z);
-    let sine = sqrt((above * (2.0 - above)).max(0.0));
+    let sine = safe_sqrt(above * (2.0 - above));
     let (sin, cos) = sin_cos(2.0 * PI * u[0]);
     vec3(sine * cos + w.x, sine * sin + w.y, up)
 }
@@ -137,7 +144,7 @@ fn visible_slope(cos: Real, sin: Real, u: Real) -> Real {
     let (mut low, mut high) = (-STEEPEST, if cos < STEEPEST * sin { cos / sin } else { STEEPEST });
     let target = u * cdf(high, exp(-sqr(high)));
     // Exact at grazing and at normal incidence.
-    let mut x = (cos * gaussian(u) - sin * sqrt(-ln(u.max(SMALLEST)))).clamp(low, high);
+    let mut x = min(max(cos * gaussian(u) - sin * sqrt(-ln(max(u, SMALLEST))), low), high);
     for _ in 0..24 {
         let gauss = exp(-sqr(x));
         let error = cdf(x, gauss) - target;
@@ -162,7 +169,7 @@ const SMALLEST: Real = 3e-8;
 
 /// A Gaussian of variance ½: erf⁻¹(2u − 1) (Giles 2012, single precision).
 fn gaussian(u: Real) -> Real {
-    let u = u.max(SMALLEST);
+    let u = max(u, SMALLEST);
     let w = -ln(4.0 * u * (1.0 - u));
     let near = [
         2.81022636e-08,

@@ -2,7 +2,7 @@
 
 use bidir_sdk::{
     Bsdf, Carried, Lobe, Made, PerSolidAngle, Real, Scatter, Scattered, Spectrum, Vec3,
-    math::{dot, normalize, sqr, vec3},
+    math::{dot, min, normalize, sqr, vec3},
 };
 
 use crate::{
@@ -70,7 +70,7 @@ impl RoughDielectric {
             return None;
         }
         let (reflectance, length2) = if reflected {
-            (fresnel::dielectric(out.min(1.0), index).reflectance, 1.0)
+            (fresnel::dielectric(min(out, 1.0), index).reflectance, 1.0)
         } else {
             (fresnel::dielectric_between(out, -back, index), dot(between, between))
         };

@@ -21,6 +21,13 @@ pub struct Spot {
 }
 
 impl Spot {
+    /// From half angles in degrees; a negative `beam_width` is three quarters of the cutoff.
+    #[inline]
+    pub fn from_degrees(intensity: Spectrum, cutoff_angle: Real, beam_width: Real) -> Self {
+        let beam_width = if beam_width < 0.0 { 0.75 * cutoff_angle } else { beam_width };
+        Self { intensity, cutoff: cutoff_angle * DEGREE, beam_width: beam_width * DEGREE }
+    }
+
     /// 1 − cos of the cutoff, without cancellation; 0 where the cone holds no direction.
     #[inline]
     fn opening(&self) -> Real {
@@ -38,6 +45,9 @@ impl Spot {
         }
     }
 }
+
+/// In radians.
+const DEGREE: Real = PI / 180.0;
 
 /// The angle to z; from both coordinates, since its cosine alone loses the digits of narrow cones.
 #[inline]

@@ -2,7 +2,11 @@
 
 use std::{boxed::Box, string::String, vec, vec::Vec};
 
-use bidir_sdk::{Emitted, EndDensity, Light, Point, Profile, Real, Spectrum, Vec2, Vec3, math::dot, real::ONE_MINUS_EPSILON};
+use bidir_sdk::{
+    Emitted, EndDensity, Light, Point, Profile, Real, Spectrum, Vec2, Vec3,
+    math::dot,
+    real::{ONE_MINUS_EPSILON, PI},
+};
 
 use super::{
     chi_square::{Histogram, masses},
@@ -175,4 +179,11 @@ fn parallel_light_fills_the_disk_with_its_irradiance() {
     let seen = sun.illuminate(&lit, [0.5, 0.5]).expect("nothing hides it");
     assert_eq!((seen.direction, seen.weight), (-direction, WARM));
     assert!(matches!(sun.next_event_density(&seen.point, &lit), EndDensity::Chance(_)));
+}
+
+#[test]
+fn a_spot_without_a_beam_width_falls_off_from_three_quarters_of_its_angle_on() {
+    let absent = Spot::from_degrees(WARM, 180.0, -1.0);
+    assert_eq!((absent.cutoff, absent.beam_width), (PI, 0.75 * PI));
+    assert_eq!(Spot::from_degrees(WARM, 180.0, 0.0).beam_width, 0.0);
 }

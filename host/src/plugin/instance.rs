@@ -1,0 +1,233 @@
+//! One module at work: an instance in a store of its own, asked through records in its memory.
+
+use std::time::Duration;
+
+use bidir_abi::{EmitOut, EvalOut, ProfileOut, SampleOut, Version, export, limit};
+use wasmtime::{Instance as Wasm, InstancePre, Memory, Store, StoreLimits, StoreLimitsBuilder, Trap, TypedFunc, UpdateDeadline};
+
+use super::{
+    engine::{Clock, TICK},
+    fault::Cause,
+    manifest::Kind,
+};
+
+/// How long one call may take.
+pub const CALL_LIMIT: Duration = Duration::from_millis(limit::CALL_MILLISECONDS);
+
+/// How long all calls of one tile may take together.
+pub const TILE_LIMIT: Duration = Duration::from_secs(10);
+
+/// Slices of time that a call may be seen in. The first one may have begun before the call did.
+const CALL_SLICES: u32 = (CALL_LIMIT.as_millis() / TICK.as_millis()) as u32;
+
+const TILE_TICKS: u64 = (TILE_LIMIT.as_millis() / TICK.as_millis()) as u64;
+
+/// ω_o, ω_i or numbers, after the addresses of record and parameters and the code of what is carried.
+type OfBsdf = TypedFunc<(u32, u32, i32, f32, f32, f32, f32, f32, f32), ()>;
+/// After the addresses of record and parameters: surface coordinates and two numbers.
+type Emit = TypedFunc<(u32, u32, f32, f32, f32, f32), ()>;
+/// After the addresses of record and parameters: surface coordinates and a direction.
+type Profile = TypedFunc<(u32, u32, f32, f32, f32, f32, f32), ()>;
+
+/// The export that failed, and how.
+pub(super) type Failure = (&'static str, Cause);
+
+/// Bytes before the parameter blocks, for the records of answers.
+const RECORDS: u32 = 64;
+
+/// What a store knows of the call under way.
+#[derive(Debug)]
+pub(super) struct State {
+    limits: StoreLimits,
+    /// Times the clock found this call running.
+    slices: u32,
+}
+
+/// A module at work.
+pub(super) struct Instance {
+    store: Store<State>,
+    memory: Memory,
+    functions: Functions,
+    clock: Clock,
+    /// Where the host's region begins.
+    region: u32,
+    /// Ticks spent in calls.
+    spent: u64,
+}
+
+enum Functions {
+    Bsdf { eval: OfBsdf, sample: OfBsdf },
+    Light { emit: Emit, eval: Profile },
+}
+
+impl Instance {
+    /// An instance of its own memory, with `blocks` of parameters written one after another from [`Instance::block`] (0) on.
+    pub(super) fn new(module: &InstancePre<State>, clock: Clock, kind: Kind, blocks: &[u8]) -> Result<Self, Failure> {
+        let mut store = store(module.module().engine());
+        let wasm = module.instantiate(&mut store).map_err(|error| ("start", cause(&error, Cause::Unready)))?;
+        let missing = |name| (name, Cause::Unready("the export is missing".to_owned()));
+        let memory = wasm.get_memory(&mut store, export::MEMORY).ok_or_else(|| missing(export::MEMORY))?;
+        let functions = Functions::of(kind, &wasm, &mut store)?;
+        let scratch = typed::<u32, u32>(&wasm, &mut store, export::SCRATCH)?;
+        let bytes = RECORDS + blocks.len() as u32;
+        begin(&mut store);
+        let region = scratch.call(&mut store, bytes).map_err(|error| (export::SCRATCH, cause(&error, Cause::Trap)))?;
+        let mut instance = Self { store, memory, functions, clock, region, spent: 0 };
+        instance.take_region(bytes)?;
+        instance.write(instance.block(0), blocks);
+        Ok(instance)
+    }
+
+    /// Whether all of the region that the module gave lies in its memory.
+    fn take_region(&self, bytes: u32) -> Result<(), Failure> {
+        let refused = |why: String| Err((export::SCRATCH, Cause::Unready(why)));
+        let size = self.memory.data_size(&self.store);
+        match self.region {
+            0 => refused(format!("it has no room for the {bytes} bytes of records and parameters")),
+            region if !region.is_multiple_of(limit::SCRATCH_ALIGNMENT as u32) => {
+                refused(format!("it gave address {region}, which is not a multiple of 16"))
+            }
+            region if region as usize + bytes as usize > size => {
+                refused(format!("it gave {bytes} bytes at address {region}, but its memory ends at {size}"))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// The address of the parameters that were written `offset` bytes into the blocks.
+    #[inline]
+    pub(super) fn block(&self, offset: u32) -> u32 {
+        self.region + RECORDS + offset
+    }
+
+    /// Writes parameters. The place must lie in the host's region.
+    #[inline]
+    pub(super) fn write(&mut self, address: u32, bytes: &[u8]) {
+        if let Some(place) = self.memory.data_mut(&mut self.store).get_mut(address as usize..address as usize + bytes.len()) {
+            place.copy_from_slice(bytes);
+        }
+    }
+
+    /// `bidir_abi`'s answer.
+    pub(super) fn version(module: &InstancePre<State>) -> Result<Version, Failure> {
+        let mut store = store(module.module().engine());
+        let wasm = module.instantiate(&mut store).map_err(|error| ("start", cause(&error, Cause::Unready)))?;
+        let version = typed::<(), i32>(&wasm, &mut store, export::ABI)?;
+        begin(&mut store);
+        version.call(&mut store, ()).map(Version::unpack).map_err(|error| (export::ABI, cause(&error, Cause::Trap)))
+    }
+
+    /// Asks `bsdf_eval`.
+    #[inline]
+    pub(super) fn bsdf_eval(&mut self, block: u32, carried: i32, wo: [f32; 3], wi: [f32; 3]) -> Result<[u8; EvalOut::BYTES], Failure> {
+        let Functions::Bsdf { eval, .. } = &self.functions else { return Err(absent(export::BSDF_EVAL)) };
+        let (out, start) = (self.region, self.clock.now());
+        begin(&mut self.store);
+        let done = eval.call(&mut self.store, (out, block, carried, wo[0], wo[1], wo[2], wi[0], wi[1], wi[2]));
+        self.answer(export::BSDF_EVAL, start, done)
+    }
+
+    /// Asks `bsdf_sample`.
+    #[inline]
+    pub(super) fn bsdf_sample(&mut self, block: u32, carried: i32, wo: [f32; 3], u: [f32; 3]) -> Result<[u8; SampleOut::BYTES], Failure> {
+        let Functions::Bsdf { sample, .. } = &self.functions else { return Err(absent(export::BSDF_SAMPLE)) };
+        let (out, start) = (self.region, self.clock.now());
+        begin(&mut self.store);
+        let done = sample.call(&mut self.store, (out, block, carried, wo[0], wo[1], wo[2], u[0], u[1], u[2]));
+        self.answer(export::BSDF_SAMPLE, start, done)
+    }
+
+    /// Asks `light_emit`.
+    #[inline]
+    pub(super) fn light_emit(&mut self, block: u32, uv: [f32; 2], u: [f32; 2]) -> Result<[u8; EmitOut::BYTES], Failure> {
+        let Functions::Light { emit, .. } = &self.functions else { return Err(absent(export::LIGHT_EMIT)) };
+        let (out, start) = (self.region, self.clock.now());
+        begin(&mut self.store);
+        let done = emit.call(&mut self.store, (out, block, uv[0], uv[1], u[0], u[1]));
+        self.answer(export::LIGHT_EMIT, start, done)
+    }
+
+    /// Asks `light_eval`.
+    #[inline]
+    pub(super) fn light_eval(&mut self, block: u32, uv: [f32; 2], w: [f32; 3]) -> Result<[u8; ProfileOut::BYTES], Failure> {
+        let Functions::Light { eval, .. } = &self.functions else { return Err(absent(export::LIGHT_EVAL)) };
+        let (out, start) = (self.region, self.clock.now());
+        begin(&mut self.store);
+        let done = eval.call(&mut self.store, (out, block, uv[0], uv[1], w[0], w[1], w[2]));
+        self.answer(export::LIGHT_EVAL, start, done)
+    }
+
+    /// The record that a call left, and what it cost.
+    #[inline]
+    fn answer<const N: usize>(&mut self, export: &'static str, start: u64, done: wasmtime::Result<()>) -> Result<[u8; N], Failure> {
+        done.map_err(|error| (export, cause(&error, Cause::Trap)))?;
+        self.spent += self.clock.now() - start;
+        if self.spent > TILE_TICKS {
+            return Err((export, Cause::Slow));
+        }
+        let at = self.region as usize;
+        let record = self.memory.data(&self.store).get(at..at + N).and_then(|bytes| bytes.try_into().ok());
+        record.ok_or_else(|| (export, Cause::Trap("its memory became smaller".to_owned())))
+    }
+}
+
+impl Functions {
+    fn of(kind: Kind, wasm: &Wasm, store: &mut Store<State>) -> Result<Self, Failure> {
+        Ok(match kind {
+            Kind::Bsdf => Self::Bsdf { eval: typed(wasm, store, export::BSDF_EVAL)?, sample: typed(wasm, store, export::BSDF_SAMPLE)? },
+            Kind::Light => Self::Light { emit: typed(wasm, store, export::LIGHT_EMIT)?, eval: typed(wasm, store, export::LIGHT_EVAL)? },
+        })
+    }
+}
+
+#[cold]
+fn absent(export: &'static str) -> Failure {
+    (export, Cause::Unready("the module is of another kind".to_owned()))
+}
+
+fn typed<P: wasmtime::WasmParams, R: wasmtime::WasmResults>(
+    wasm: &Wasm,
+    store: &mut Store<State>,
+    name: &'static str,
+) -> Result<TypedFunc<P, R>, Failure> {
+    wasm.get_typed_func(store, name).map_err(|error| (name, Cause::Unready(error.to_string())))
+}
+
+fn store(engine: &wasmtime::Engine) -> Store<State> {
+    let limits = StoreLimitsBuilder::new()
+        .memory_size(limit::MAX_MEMORY_BYTES)
+        .table_elements(limit::MAX_TABLE_ENTRIES)
+        .instances(1)
+        .memories(1)
+        .tables(1)
+        .build();
+    let mut store = Store::new(engine, State { limits, slices: 0 });
+    store.limiter(|state| &mut state.limits);
+    store.epoch_deadline_callback(|mut context| {
+        let state = context.data_mut();
+        state.slices += 1;
+        // Slices are counted, not ticks: a thread that had to wait for a processor is not to blame for that.
+        if state.slices > CALL_SLICES { Err(Trap::Interrupt.into()) } else { Ok(UpdateDeadline::Continue(1)) }
+    });
+    store.set_epoch_deadline(1);
+    store
+}
+
+#[inline]
+fn begin(store: &mut Store<State>) {
+    store.data_mut().slices = 0;
+}
+
+/// What an error of the sandbox means; `other` says it where it is no trap.
+#[cold]
+fn cause(error: &wasmtime::Error, other: fn(String) -> Cause) -> Cause {
+    let Some(trap) = error.downcast_ref::<Trap>() else { return other(error.root_cause().to_string()) };
+    Cause::Trap(match trap {
+        Trap::Interrupt => return Cause::Endless,
+        Trap::StackOverflow => "it ran out of stack".to_owned(),
+        Trap::MemoryOutOfBounds => "it reached outside its memory".to_owned(),
+        Trap::IntegerDivisionByZero => "it divided an integer by 0".to_owned(),
+        Trap::UnreachableCodeReached => "it gave up (an unreachable instruction; a panic, in Rust)".to_owned(),
+        other => other.to_string(),
+    })
+}
