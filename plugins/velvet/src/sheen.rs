@@ -32,7 +32,8 @@ impl Sheen {
         let sine_squared = across / (across + half.z * half.z);
         let inverse = 1.0 / self.roughness;
         let density = (2.0 + inverse) * power(sine_squared, 0.5 * inverse) * (0.5 * INV_PI);
-        let (out, into) = (wo.z.max(LEAST_COSINE), wi.z.max(LEAST_COSINE));
+        // A unit vector may be longer by a rounding.
+        let (out, into) = (wo.z.clamp(LEAST_COSINE, 1.0), wi.z.clamp(LEAST_COSINE, 1.0));
         density / (4.0 * out * into * (1.0 + self.shadowing(out) + self.shadowing(into)))
     }
 
