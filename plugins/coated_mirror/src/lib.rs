@@ -10,6 +10,7 @@
 //! (after Weidlich & Wilkie 2007, "Arbitrarily Layered Micro-Facet Surfaces"). 1/(1 − F R) are the bounces between metal
 //! and coat, exact where the metal is smooth; min keeps it reciprocal and never gains. tint^d is absorption
 //! along the two legs, d = (1/cos θ_o' + 1/cos θ_i')/2: the colour at normal incidence, deeper towards grazing.
+#![allow(clippy::neg_cmp_op_on_partial_ord, reason = "`!(x > 0.0)` refuses NaN too")]
 
 use bidir_sdk::{
     Bsdf, Carried, Chance, Lobe, Made, PerSolidAngle, Real, Scatter, Scattered, Spectrum, Vec3,

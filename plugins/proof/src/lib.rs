@@ -32,10 +32,12 @@ fn directions() -> Vec<Vec3> {
     [1.0, 0.999, 0.8, 0.4, 0.1, 1e-3].iter().flat_map(|&cos| [direction(cos, 0.7), direction(-cos, 0.7)]).collect()
 }
 
-/// Directions at the normal, at grazing and closer to it than any image needs, on both sides.
+/// Directions at the normal, at grazing and closer to it than any image needs, on both sides; and of unit vectors that
+/// rounding has made longer than 1, as every renderer has them.
 fn edges() -> Vec<Vec3> {
     let cosines = [1.0, 0.5, 1e-3, 1e-7, 1e-12, 0.0, -0.0, -1e-12, -1e-7, -1e-3, -0.5, -1.0];
-    cosines.iter().flat_map(|&cos| [direction(cos, 0.3), direction(cos, 0.3 + PI)]).collect()
+    let longer = [1.0, -1.0].map(|side| vec3(1.25e-4, -1.1e-5, side * (1.0 + 2.0 * Real::EPSILON)));
+    cosines.iter().flat_map(|&cos| [direction(cos, 0.3), direction(cos, 0.3 + PI)]).chain(longer).collect()
 }
 
 /// The corners of the cube that samples are made from, and its middles.

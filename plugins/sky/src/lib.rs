@@ -91,15 +91,15 @@ impl Heaven {
         [disk, above * GLOW_OF_SKY, above * (1.0 - GLOW_OF_SKY), below]
     }
 
-    /// 1 − cos of the angle between two unit vectors, without cancellation.
-    fn from_sun(&self, place: Vec3) -> Real {
+    /// 1 − cos of the angle between a place and the sun, without cancellation.
+    fn apart_from_sun(&self, place: Vec3) -> Real {
         let chord = place - self.sun;
         0.5 * dot(chord, chord)
     }
 
     /// Radiance from a place above the horizon, without the disk.
     fn sky(&self, place: Vec3) -> Spectrum {
-        self.air.radiance(place.z, self.from_sun(place)) * self.scale
+        self.air.radiance(place.z, self.apart_from_sun(place)) * self.scale
     }
 
     /// Radiance of the ground: matt, lit by the disk and by the sky, whose irradiance is
@@ -119,7 +119,7 @@ impl Heaven {
     }
 
     fn look(&self, place: Vec3) -> Profiled {
-        let h = self.from_sun(place);
+        let h = self.apart_from_sun(place);
         let disk = self.disk.pdf(h);
         let radiance = if place.z > 0.0 { self.sky(place) + self.sunlight * disk } else { self.ground() };
         let densities = [disk, glow_pdf(h), dome_pdf(place.z), ground_pdf(place.z)];

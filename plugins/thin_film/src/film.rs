@@ -138,26 +138,32 @@ const RGB_FROM_XYZ: [[Real; 3]; 3] =
 /// Averages of e^{imδ} over each band, for a path of this length (m).
 fn lags(path: Real) -> [Lags; 3] {
     let mut bands = [[Complex(0.0, 0.0); TERMS]; 3];
-    let phase = 2.0 * PI * path;
     for (part, eye) in EYE.iter().enumerate() {
-        let (sin, cos) = sin_cos(eye.center * phase);
-        let turn = Complex(cos, sin);
-        // exp(−m² v φ²), from m to m + 1 by a factor that itself falls.
-        let first = exp(-eye.half_variance * sqr(phase));
-        let (mut damping, mut factor) = (first, first * sqr(first));
-        let mut turned = turn;
-        for term in 0..TERMS {
+        for (m, wave) in waves(eye, 2.0 * PI * path).into_iter().enumerate() {
             for (band, row) in RGB_FROM_XYZ.iter().enumerate() {
-                let share = row[part.saturating_sub(1)] * eye.share * damping;
-                bands[band][term].0 += share * turned.0;
-                bands[band][term].1 += share * turned.1;
+                let share = row[part.saturating_sub(1)] * eye.share;
+                bands[band][m].0 += share * wave.0;
+                bands[band][m].1 += share * wave.1;
             }
-            turned = turned.times(turn);
-            damping *= factor;
-            factor *= sqr(first);
         }
     }
     bands
+}
+
+/// Averages of e^{imδ} over one part of the sensitivity: exp(−m² v φ²) e^{imκφ}.
+fn waves(eye: &Sensitivity, phase: Real) -> Lags {
+    let (sin, cos) = sin_cos(eye.center * phase);
+    let turn = Complex(cos, sin);
+    let first = exp(-eye.half_variance * sqr(phase));
+    // From m² to (m + 1)² by a factor that itself falls.
+    let (mut turned, mut damping, mut factor) = (turn, first, first * sqr(first));
+    core::array::from_fn(|_| {
+        let wave = Complex(damping * turned.0, damping * turned.1);
+        turned = turned.times(turn);
+        damping *= factor;
+        factor *= sqr(first);
+        wave
+    })
 }
 
 #[cfg(test)]

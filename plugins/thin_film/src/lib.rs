@@ -2,6 +2,7 @@
 //!
 //! f = F D G/(4 cos θ_o cos θ_i) with GGX microfacets (Walter et al. 2007, eq. 20) and the reflectance F of metal and film
 //! together ([`film`]).
+#![allow(clippy::neg_cmp_op_on_partial_ord, reason = "`!(x > 0.0)` refuses NaN too")]
 
 pub mod film;
 

@@ -2,6 +2,7 @@
 //!
 //! f = tint · sheen + ρ/π (1 − t E(ω_o)) (1 − t E(ω_i))/(1 − t E_mean), where E is the sheen's albedo and t the strongest
 //! band of the tint: the base gets what the sheen leaves, the same both ways, and white on white gives everything back.
+#![allow(clippy::neg_cmp_op_on_partial_ord, reason = "`!(x > 0.0)` refuses NaN too")]
 
 pub mod sheen;
 

@@ -1,5 +1,6 @@
 //! A lamp with a measured distribution. `../README.md` holds the definition that this source and its twin in
 //! AssemblyScript follow.
+#![allow(clippy::neg_cmp_op_on_partial_ord, reason = "`!(x > 0.0)` refuses NaN too")]
 
 use bidir_sdk::{
     Emitted, PerSolidAngle, Profile, Real, Spectrum, Vec2, Vec3,

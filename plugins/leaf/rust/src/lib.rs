@@ -1,5 +1,6 @@
 //! A thin sheet that scatters light back and lets light through. `../README.md` holds the definition that this source
 //! and its twin in C follow.
+#![allow(clippy::neg_cmp_op_on_partial_ord, reason = "`!(x > 0.0)` refuses NaN too")]
 
 use bidir_sdk::{
     Bsdf, Carried, Lobe, Made, PerSolidAngle, Real, Scatter, Scattered, Spectrum, Vec3, math::vec3, real::INV_PI, warp::cosine_hemisphere,
