@@ -140,6 +140,9 @@ pub struct Manifest {
     pub params: Vec<Parameter>,
 }
 
+/// What scenes say of a shader themselves.
+const RESERVED: [&str; 7] = ["id", "name", "type", "as", "to_world", "position", "sampling_weight"];
+
 fn yes() -> bool {
     true
 }
@@ -152,6 +155,9 @@ impl Manifest {
     pub fn read(json: &[u8]) -> Result<Self, String> {
         let manifest: Self = serde_json::from_slice(json).map_err(|error| format!("is not as the ABI page has it: {error}"))?;
         manifest.check_kind()?;
+        if let Some(taken) = manifest.params.iter().find(|parameter| RESERVED.contains(&parameter.name.as_str())) {
+            return Err(format!("has parameter \"{}\", a name that the host keeps for itself", taken.name));
+        }
         for (at, parameter) in manifest.params.iter().enumerate() {
             parameter.check().map_err(|why| format!("has parameter \"{}\", {why}", parameter.name))?;
             for other in &manifest.params[..at] {
