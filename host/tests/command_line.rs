@@ -343,3 +343,131 @@ fn a_depth_limit_beats_the_scenes() {
     assert!(desk.run(&["render", "good.xml", "-o", "black.exr", "--max-depth", "0"]).status.success());
     assert!(image(&desk.path("black.exr")).pixels.iter().all(|&pixel| pixel == [0.0; 3]));
 }
+
+/// The committed modules.
+fn prebuilt() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../plugins/prebuilt")
+}
+
+fn json(output: &Output) -> serde_json::Value {
+    serde_json::from_slice(&output.stdout).expect("JSON")
+}
+
+#[test]
+fn a_plugin_cannot_have_any_name() {
+    let desk = Desk::new();
+    for name in ["Velvet", "my_velvet", "2ply", "a/b", "", "über", "diffuse", "area", "self"] {
+        desk.refuses(&["plugin", "new", name, "--kind", "bsdf", "--language", "c"], &[&format!("\"{name}\"")]);
+    }
+}
+
+#[test]
+fn a_new_plugin_writes_over_nothing() {
+    let desk = Desk::new();
+    fs::create_dir(desk.path("chalk")).expect("a folder");
+    fs::write(desk.path("chalk/notes.txt"), "mine").expect("a file");
+    desk.refuses(&["plugin", "new", "chalk", "--kind", "bsdf", "--language", "zig"], &["chalk", "not empty"]);
+    desk.refuses(&["plugin", "new", "chalk", "--kind", "bsdf", "--language", "zig", "-o", "good.xml"], &["good.xml"]);
+    assert_eq!(fs::read_dir(desk.path("chalk")).expect("a folder").count(), 1);
+}
+
+#[test]
+fn a_new_plugin_has_its_files_in_every_language() {
+    let desk = Desk::new();
+    let sources = [("rust", "src/lib.rs"), ("c", "shader.c"), ("assemblyscript", "shader.ts"), ("zig", "shader.zig")];
+    for (language, source) in sources {
+        for kind in ["bsdf", "light"] {
+            let folder = format!("{language}-{kind}");
+            let output = desk.run(&["plugin", "new", "chalk", "--kind", kind, "--language", language, "-o", &folder]);
+            assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+            assert_eq!(text(&output.stdout).split_whitespace().last(), Some(folder.as_str()));
+            for file in [source, "build.sh", "README.md", "scene.xml", ".gitignore"] {
+                assert!(desk.path(&folder).join(file).is_file(), "{folder}/{file}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_rust_project_names_the_sdk_it_was_given() {
+    let desk = Desk::new();
+    let begin = ["plugin", "new", "chalk", "--kind", "bsdf", "--language", "rust", "--sdk"];
+    desk.refuses(&[&begin[..], &["nowhere"]].concat(), &["nowhere", "--sdk"]);
+    fs::create_dir(desk.path("kit")).expect("a folder");
+    fs::write(desk.path("kit/Cargo.toml"), "").expect("a file");
+    assert_eq!(desk.run(&[&begin[..], &["kit"]].concat()).status.code(), Some(0));
+    let manifest = fs::read_to_string(desk.path("chalk/Cargo.toml")).expect("a manifest");
+    let kit = desk.path("kit").canonicalize().expect("a path");
+    assert!(manifest.contains(&format!("path = \"{}\"", kit.display())), "{manifest}");
+}
+
+#[test]
+fn the_list_of_plugins_says_what_each_is() {
+    let desk = Desk::new();
+    let folder = prebuilt().display().to_string();
+    let output = desk.run(&["plugin", "list", &folder]);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    let said = text(&output.stdout);
+    let line = said.lines().find(|line| line.starts_with("roughconductor ")).expect("a line");
+    assert!(line.contains("bsdf") && line.contains("glossy_reflection"), "{line}");
+    let same = desk.command(&["plugin", "list", "--json"]).env("BIDIR_PLUGINS", &folder).output().expect("the program");
+    let listed = json(&same);
+    assert_eq!(listed.as_array().expect("a list").len(), said.lines().count());
+}
+
+#[test]
+fn a_refused_plugin_does_not_hide_the_others() {
+    let desk = Desk::new();
+    fs::write(desk.path("broken.wasm"), "no module").expect("a file");
+    fs::copy(prebuilt().join("diffuse.wasm"), desk.path("matt.wasm")).expect("a copy");
+    let output = desk.run(&["plugin", "list"]);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(text(&output.stdout).starts_with("matt "), "{}", text(&output.stdout));
+    let said = text(&output.stderr);
+    assert!(said.lines().count() == 1 && said.starts_with("error: ") && said.contains("broken.wasm"), "{said}");
+}
+
+#[test]
+fn inspecting_a_plugin_tells_its_parameters_and_its_times() {
+    let desk = Desk::new();
+    for (name, exports) in [("roughconductor", ["bsdf_eval", "bsdf_sample"]), ("spot", ["light_eval", "light_emit"])] {
+        let file = prebuilt().join(format!("{name}.wasm")).display().to_string();
+        let output = desk.run(&["plugin", "inspect", &file, "--json"]);
+        assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+        assert!(output.stderr.is_empty(), "{}", text(&output.stderr));
+        let report = json(&output);
+        assert_eq!((&report["type"], &report["abi"]), (&name.into(), &"1.0".into()));
+        assert_eq!(report["bytes"], fs::metadata(&file).expect("a file").len());
+        for (at, export) in exports.into_iter().enumerate() {
+            assert_eq!(report["timing"]["calls"][at]["export"], export);
+            let nanoseconds = report["timing"]["calls"][at]["nanoseconds"].as_f64().expect("a number");
+            assert!(nanoseconds > 1.0 && nanoseconds < 1e6, "{name} {export}: {nanoseconds}");
+        }
+        assert!(report["timing"]["instantiation_microseconds"].as_f64().expect("a number") > 0.0);
+        let words = text(&desk.run(&["plugin", "inspect", &file]).stdout);
+        for parameter in report["manifest"]["params"].as_array().expect("parameters") {
+            let parameter = format!("\n  {} ", parameter["name"].as_str().expect("a name"));
+            assert!(words.contains(&parameter), "{parameter} is not in: {words}");
+        }
+    }
+}
+
+#[test]
+fn what_is_no_plugin_cannot_be_inspected() {
+    let desk = Desk::new();
+    fs::write(desk.path("notes.wasm"), "no module").expect("a file");
+    desk.refuses(&["plugin", "inspect", "notes.wasm"], &["notes.wasm", "not a WebAssembly module"]);
+    desk.refuses(&["plugin", "inspect", "nowhere.wasm"], &["nowhere.wasm"]);
+}
+
+#[test]
+fn a_plugin_that_breaks_off_when_it_is_loaded_is_bad_input() {
+    let desk = Desk::new();
+    let manifest = r#"{"name": "trap", "kind": "light", "emits_from": ["point"]}"#;
+    let module = r#"(module (memory (export "memory") 1)
+        (func (export "bidir_abi") (result i32) unreachable) (func (export "bidir_scratch") (param i32) (result i32) (i32.const 16))
+        (func (export "light_eval") (param i32 i32 f32 f32 f32 f32 f32)) (func (export "light_emit") (param i32 i32 f32 f32 f32 f32)))"#;
+    fs::write(desk.path("trap.json"), manifest).expect("a file");
+    fs::write(desk.path("trap.wasm"), wat::parse_str(module).expect("a module")).expect("a file");
+    desk.refuses(&["plugin", "inspect", "trap.wasm"], &["trap.wasm", "bidir_abi"]);
+}

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 
+use super::plugin::templates;
 use crate::{plan::Named, render::Numbers};
 
 /// A bidirectional path tracer for Mitsuba 3 scenes.
@@ -26,6 +27,9 @@ pub enum Command {
     Techniques(Techniques),
     /// Hold an image against a reference: relMSE, SMAPE, bias, worst block
     Compare(Compare),
+    /// Begin a plugin, list plugins, or look into one
+    #[command(subcommand)]
+    Plugin(Plugin),
 }
 
 /// Where a scene comes from.
@@ -136,6 +140,60 @@ pub struct Compare {
     pub image: PathBuf,
     /// The reference
     pub reference: PathBuf,
+    /// As JSON
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `bidir plugin`
+#[derive(Debug, Subcommand)]
+pub enum Plugin {
+    /// Write a project to begin a plugin with
+    New(NewPlugin),
+    /// List the plugins in folders, without running them
+    List(ListPlugins),
+    /// Say what a plugin holds, and how long its calls take
+    Inspect(InspectPlugin),
+}
+
+/// `bidir plugin new`
+#[derive(Debug, Args)]
+pub struct NewPlugin {
+    /// What scenes will call it: a lower-case letter, then lower-case letters and digits
+    pub name: String,
+    /// What it is to be
+    #[arg(long, value_parser = templates::KINDS)]
+    pub kind: String,
+    /// What it is to be written in
+    #[arg(long, value_parser = templates::LANGUAGES)]
+    pub language: String,
+    /// The folder to write to, new or empty; by default NAME
+    #[arg(short, long, value_name = "DIR")]
+    pub output: Option<PathBuf>,
+    /// For Rust: the folder plugins/sdk of a checkout; by default that of the one this program was built from
+    #[arg(long, value_name = "PATH")]
+    pub sdk: Option<PathBuf>,
+}
+
+/// `bidir plugin list`
+#[derive(Debug, Args)]
+pub struct ListPlugins {
+    /// Folders of plugins, before those that BIDIR_PLUGINS names; without any, the current one
+    #[arg(value_name = "DIR")]
+    pub folders: Vec<PathBuf>,
+    /// One more folder; may be given again
+    #[arg(long = "plugins", value_name = "DIR")]
+    pub plugins: Vec<PathBuf>,
+    /// As JSON
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `bidir plugin inspect`
+#[derive(Debug, Args)]
+pub struct InspectPlugin {
+    /// The module: a .wasm file
+    pub file: PathBuf,
     /// As JSON
     #[arg(long)]
     pub json: bool,

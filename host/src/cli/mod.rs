@@ -4,6 +4,7 @@ mod arguments;
 mod compare;
 mod explain;
 mod interrupt;
+mod plugin;
 pub mod progress;
 mod render;
 mod stats;
@@ -21,6 +22,8 @@ use arguments::{Arguments, Command};
 pub(crate) enum Outcome {
     /// All right: exit status 0.
     Done,
+    /// Done, but part of the input was refused, and said to be: 1.
+    Refused,
     /// Ctrl-C; what was rendered is saved: 130.
     Interrupted,
 }
@@ -41,9 +44,11 @@ pub fn main() -> ExitCode {
         Command::Explain(explain) => explain::run(explain),
         Command::Techniques(techniques) => techniques::run(techniques),
         Command::Compare(compare) => compare::run(compare),
+        Command::Plugin(command) => plugin::run(command),
     };
     match outcome {
         Ok(Outcome::Done) => ExitCode::SUCCESS,
+        Ok(Outcome::Refused) => ExitCode::from(1),
         Ok(Outcome::Interrupted) => ExitCode::from(130),
         Err(error) => {
             complain(&error);
