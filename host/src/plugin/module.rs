@@ -16,7 +16,7 @@ use super::{
     manifest::Manifest,
     outline::Outline,
 };
-use crate::error::{Error, Result};
+use crate::error::{Blame, Error, Result};
 
 /// A plugin that can be asked; every thread makes instances of its own.
 pub struct Module {
@@ -77,9 +77,10 @@ impl Module {
         Ok(module)
     }
 
-    /// Asks for its version, and makes one instance.
+    /// Asks for its version, and makes one instance. No render is lost if that fails: it is the module that is refused.
     fn try_out(&mut self) -> Result<()> {
-        let theirs = Instance::version(&self.compiled).map_err(|failure| self.fault(failure))?;
+        let refused = |failure| Error { blame: Blame::Input, ..self.fault(failure).into() };
+        let theirs = Instance::version(&self.compiled).map_err(refused)?;
         if !VERSION.accepts(theirs) {
             let thing = format!(
                 "it is written for version {}.{} of the plugin ABI; this program takes {}.0 to {}.{}",
@@ -87,8 +88,8 @@ impl Module {
             );
             return Err(Error::in_file(&self.file, thing, "build it with the SDK that comes with this program"));
         }
+        self.instance(&self.manifest.defaults()).map_err(refused)?;
         self.version = theirs;
-        self.instance(&self.manifest.defaults()).map_err(|failure| self.fault(failure))?;
         Ok(())
     }
 
@@ -141,8 +142,11 @@ const ABI_PAGE: &str = "see plugins/README.md for what a plugin has to be";
 pub fn describe(file: &Path) -> Result<Manifest> {
     let bytes = read(file)?;
     let sidecar = sidecar(file)?;
-    let outline = Outline::read(&bytes).map_err(|thing| Error::in_file(file, thing, ABI_PAGE))?;
-    manifest(file, &outline, sidecar.as_deref())
+    let refused = |thing| Error::in_file(file, thing, ABI_PAGE);
+    let outline = Outline::read(&bytes).map_err(refused)?;
+    let manifest = manifest(file, &outline, sidecar.as_deref())?;
+    outline.check_exports(manifest.kind).map_err(refused)?;
+    Ok(manifest)
 }
 
 fn manifest(file: &Path, outline: &Outline, sidecar: Option<&[u8]>) -> Result<Manifest> {
