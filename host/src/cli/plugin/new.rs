@@ -16,76 +16,10 @@ use crate::{
 const SDK: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../plugins/sdk");
 
 /// Names that the Rust projects cannot have: crates of the language, keywords that a crate is not called, types of the SDK in lower case.
-const TAKEN: &[&str] = &[
-    "abstract",
-    "alloc",
-    "as",
-    "async",
-    "await",
-    "become",
-    "box",
-    "break",
-    "bsdf",
-    "carried",
-    "const",
-    "continue",
-    "core",
-    "crate",
-    "do",
-    "dyn",
-    "else",
-    "emitted",
-    "enum",
-    "extern",
-    "false",
-    "final",
-    "fn",
-    "for",
-    "frame",
-    "gen",
-    "if",
-    "impl",
-    "in",
-    "let",
-    "lobe",
-    "loop",
-    "made",
-    "match",
-    "mod",
-    "move",
-    "mut",
-    "profile",
-    "pub",
-    "ref",
-    "return",
-    "self",
-    "static",
-    "std",
-    "struct",
-    "super",
-    "test",
-    "trait",
-    "true",
-    "type",
-    "macro",
-    "override",
-    "priv",
-    "profiled",
-    "real",
-    "scatter",
-    "scattered",
-    "spectrum",
-    "try",
-    "typeof",
-    "union",
-    "unsafe",
-    "unsized",
-    "use",
-    "virtual",
-    "where",
-    "while",
-    "yield",
-];
+const TAKEN: &str = "abstract alloc as async await become box break bsdf carried const continue core crate do dyn else emitted enum extern false \
+    final fn for frame gen if impl in let lobe loop macro made match mod move mut override priv profile profiled pub real ref \
+    return scatter scattered self spectrum static std struct super test trait true try type typeof union unsafe unsized use \
+    virtual where while yield";
 
 pub(super) fn run(arguments: &NewPlugin) -> Result<Outcome> {
     let NewPlugin { name, kind, language, output, .. } = arguments;
@@ -115,7 +49,7 @@ fn check_name(name: &str) -> Result<()> {
     if ["bsdf", "emitter"].into_iter().any(|tag| catalog::supported(tag).contains(&name)) {
         return refused("there is a built-in of that name, which would win");
     }
-    if TAKEN.contains(&name) {
+    if TAKEN.split_whitespace().any(|taken| taken == name) {
         return refused("the word has a meaning of its own in a project's source");
     }
     Ok(())
