@@ -15,11 +15,12 @@ use crate::{
 /// The SDK of the checkout that this program was built from, which need not be there any more.
 const SDK: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../plugins/sdk");
 
-/// Names that the Rust projects cannot have: crates of the language, keywords that a crate is not called, types of the SDK in lower case.
-const TAKEN: &str = "abstract alloc as async await become box break bsdf carried const continue core crate do dyn else emitted enum extern false \
-    final fn for frame gen if impl in let lobe loop macro made match mod move mut override priv profile profiled pub real ref \
-    return scatter scattered self spectrum static std struct super test trait true try type typeof union unsafe unsized use \
-    virtual where while yield";
+/// Names that the Rust projects cannot have: crates and keywords of the language, types of the SDK in lower case.
+const TAKEN: &str = "\
+    abstract alloc as async await become box break bsdf carried const continue core crate do dyn else emitted enum extern \
+    false final fn for frame gen if impl in let lobe loop macro made match mod move mut override priv profile profiled pub \
+    real ref return scatter scattered self spectrum static std struct super test trait true try type typeof union unsafe \
+    unsized use virtual where while yield";
 
 pub(super) fn run(arguments: &NewPlugin) -> Result<Outcome> {
     let NewPlugin { name, kind, language, output, .. } = arguments;
