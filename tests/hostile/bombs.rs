@@ -41,15 +41,14 @@ fn loops(locals: usize, depth: usize) -> String {
 fn many_locals_through_many_loops_are_refused() {
     let said = explode("4,000 loops with 1,000 locals", &function(1000, &loops(1000, 4000))).expect_err("a bomb");
     assert!(said.contains("hostile.wasm: the module has 1001 blocks inside each other, and may have 1000"), "{said}");
-    let said = explode("3 × 900 loops with 1,000 locals", &function(1000, &loops(1000, 900)).repeat(3)).expect_err("a bomb");
-    assert!(said.contains("branches times locals, and may have 4000000"), "{said}");
+    let said = explode("900 loops with 1,000 locals", &function(1000, &loops(1000, 900))).expect_err("a bomb");
+    assert!(said.contains("branches times locals, and may have 1000000"), "{said}");
 }
 
 #[test]
 fn loops_at_the_limit_compile_in_bounded_time() {
-    explode("900 loops with 1,000 locals", &function(1000, &loops(1000, 900))).expect("within the limits");
-    explode("2 × 900 loops with 1,000 locals", &function(1000, &loops(1000, 900)).repeat(2)).expect("within the limits");
-    explode("40 × 200 loops with 200 locals", &function(200, &loops(200, 200)).repeat(40)).expect("within the limits");
+    explode("450 loops with 1,000 locals", &function(1000, &loops(1000, 450))).expect("within the limits");
+    explode("11 × 200 loops with 200 locals", &function(200, &loops(200, 200)).repeat(11)).expect("within the limits");
 }
 
 #[test]
@@ -68,7 +67,7 @@ fn wide_blocks_are_refused() {
 #[test]
 fn branches_on_all_locals_compile_in_bounded_time() {
     let mut body = String::new();
-    for i in 0..1800 {
+    for i in 0..900 {
         let _ = write!(
             body,
             "local.get {} if i32.const {i} local.set {} else local.get {} local.set {} end ",
@@ -78,14 +77,14 @@ fn branches_on_all_locals_compile_in_bounded_time() {
             i % 500
         );
     }
-    explode("1,800 ifs with 500 locals", &function(500, &body).repeat(2)).expect("within the limits");
+    explode("900 ifs with 500 locals", &function(500, &body)).expect("within the limits");
 }
 
 #[test]
 fn a_table_of_all_branches_compiles_in_bounded_time() {
     let labels: String = (0..30_000).map(|i| format!("{} ", i % 100)).collect();
     let body = format!("{} local.get 0 br_table {labels} {}", "block ".repeat(100), "end ".repeat(100));
-    explode("a table of 30,000", &function(10, &body).repeat(4)).expect("within the limits");
+    explode("a table of 30,000", &function(10, &body)).expect("within the limits");
 }
 
 #[test]

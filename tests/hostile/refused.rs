@@ -1,6 +1,6 @@
 //! Modules that are refused when they are loaded (rows 61 to 64), with what was expected.
 
-use std::{fs, path::Path};
+use std::fs;
 
 use bidir::plugin::Module;
 

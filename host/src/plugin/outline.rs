@@ -18,7 +18,7 @@ const MAX_LOCALS_TOGETHER: u64 = 100_000;
 const MAX_DEPTH: u32 = 1_000;
 
 /// Values that the compiler may have to carry to the ends of branches: all branches and blocks, times what lives there.
-const MAX_CARRIED: u64 = 4_000_000;
+const MAX_CARRIED: u64 = 1_000_000;
 
 /// Parameters and results of one function type.
 const MAX_WIDTH: u32 = 100;
