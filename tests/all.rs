@@ -7,6 +7,7 @@
 mod agreement;
 mod depth;
 mod furnace;
+mod hostile;
 mod house;
 mod invariance;
 mod pictures;

@@ -1,7 +1,7 @@
 //! A module's outline, read before anything is compiled: compiling cannot be stopped, so what could take long is refused first.
 
 use bidir_abi::{export, limit, manifest};
-use wasmparser::{ExternalKind, FunctionBody, Parser, Payload, ValType};
+use wasmparser::{ExternalKind, FunctionBody, Operator, Parser, Payload, ValType};
 
 use super::manifest::Kind;
 
@@ -13,6 +13,15 @@ const MAX_LOCALS: u32 = 1_000;
 
 /// Local variables of all functions together.
 const MAX_LOCALS_TOGETHER: u64 = 100_000;
+
+/// Blocks inside each other.
+const MAX_DEPTH: u32 = 1_000;
+
+/// Values that the compiler may have to carry to the ends of branches: all branches and blocks, times what lives there.
+const MAX_CARRIED: u64 = 1_000_000;
+
+/// Parameters and results of one function type.
+const MAX_WIDTH: u32 = 100;
 
 /// Globals, and data and element segments, each.
 const MAX_PARTS: u32 = 1_000;
@@ -34,6 +43,9 @@ pub(super) struct Outline<'a> {
     signatures: Vec<(String, Option<Signature>)>,
     memories: u32,
     locals: u64,
+    /// The most parameters and results that a type has.
+    width: u64,
+    carried: u64,
 }
 
 impl<'a> Outline<'a> {
@@ -64,6 +76,9 @@ impl<'a> Outline<'a> {
                     for one in group.map_err(broken)?.into_types() {
                         let function = match one.composite_type.inner {
                             wasmparser::CompositeInnerType::Func(function) => {
+                                let width = (function.params().len() + function.results().len()) as u32;
+                                at_most("parameters and results of one type", width, MAX_WIDTH)?;
+                                self.width = self.width.max(u64::from(width));
                                 Some((function.params().to_vec(), function.results().to_vec()))
                             }
                             _ => None,
@@ -140,7 +155,10 @@ impl<'a> Outline<'a> {
         }
         self.locals += locals;
         at_most("locals in one function", u32::try_from(locals).unwrap_or(u32::MAX), MAX_LOCALS)?;
-        at_most("locals", u32::try_from(self.locals).unwrap_or(u32::MAX), MAX_LOCALS_TOGETHER as u32)
+        at_most("locals", u32::try_from(self.locals).unwrap_or(u32::MAX), MAX_LOCALS_TOGETHER as u32)?;
+        // Parameters of the function and operands of its blocks are both at most as many as the widest type has.
+        self.carried += branches(body)? * (1 + locals + 2 * self.width);
+        at_most("branches times locals", u32::try_from(self.carried).unwrap_or(u32::MAX), MAX_CARRIED as u32)
     }
 
     /// Checks that everything is exported that a module of that kind has to.
@@ -173,6 +191,24 @@ impl<'a> Outline<'a> {
         }
         Ok(())
     }
+}
+
+/// How many blocks and ways out of them a function has.
+fn branches(body: &FunctionBody) -> Result<u64, String> {
+    let (mut count, mut depth) = (0, 0u32);
+    for operator in body.get_operators_reader().map_err(broken)? {
+        match operator.map_err(broken)? {
+            Operator::Block { .. } | Operator::Loop { .. } | Operator::If { .. } => {
+                (count, depth) = (count + 1, depth + 1);
+                at_most("blocks inside each other", depth, MAX_DEPTH)?;
+            }
+            Operator::Else | Operator::Br { .. } | Operator::BrIf { .. } => count += 1,
+            Operator::BrTable { targets } => count += 1 + u64::from(targets.len()),
+            Operator::End => depth = depth.saturating_sub(1),
+            _ => {}
+        }
+    }
+    Ok(count)
 }
 
 fn words((parameters, results): &Signature) -> String {
