@@ -12,6 +12,7 @@ mod house;
 mod invariance;
 mod pictures;
 mod references;
+mod sandbox;
 mod scenes;
 mod statistics;
 mod techniques;

@@ -68,6 +68,7 @@ impl Subject {
     pub fn image(&self, job: &Job) -> Image {
         let film = Film::new(&self.description.film).expect("a film");
         let status = render::render(&self.scene, &film, job, &AtomicBool::new(false), |_| None);
+        assert_eq!(status.fault, None);
         assert!(!status.interrupted && film.refused() == 0, "{} contributions refused", film.refused());
         film.develop(light_walks(&job.strategy.techniques))
     }
@@ -83,7 +84,8 @@ impl Subject {
         let batch = |i| {
             let pyramid = Pyramid::new(&self.description.film, longest).expect("a pyramid");
             let job = self.job(strategy, samples, seed * 1000 + u64::from(i));
-            render::render(&self.scene, &pyramid, &job, &AtomicBool::new(false), |_| None);
+            let status = render::render(&self.scene, &pyramid, &job, &AtomicBool::new(false), |_| None);
+            assert_eq!(status.fault, None);
             assert_eq!(pyramid.refused(), 0);
             pyramid
         };

@@ -14,7 +14,8 @@ use crate::{
 
 const LONGEST: u32 = 4;
 
-fn wide_lens(origin: &str) -> String {
+/// A camera that sees much, and that walks find.
+pub fn wide_lens(origin: &str) -> String {
     let content = float("fov", 90.0) + &float("aperture_radius", 0.8) + &float("focus_distance", 1.0) + &film(2);
     format!(
         r#"<sensor type="thinlens">{content}<transform name="to_world"><lookat origin="{origin}" target="0, 0, 0" up="0, 1, 0"/></transform></sensor>"#
@@ -38,7 +39,8 @@ fn box_with_a_panel() -> Subject {
     read(&[depth(LONGEST as i32), wide_lens("0, 0, 0.35"), walls, shape("rectangle", panel, &(white + &area(1.0)))].concat())
 }
 
-fn techniques_of(length: u32) -> impl Iterator<Item = Technique> {
+/// The techniques that make paths of `length` segments.
+pub fn techniques_of(length: u32) -> impl Iterator<Item = Technique> {
     (0..=length + 1).map(move |s| Technique { s, t: length + 1 - s })
 }
 
@@ -79,7 +81,8 @@ fn each_alone_makes_the_same_picture_in_a_box() {
     alone_all_agree("box", &pyramids, [0.02, 0.02]);
 }
 
-fn switched(set: u32) -> Techniques {
+/// Joins as the bits of `set` say.
+pub fn switched(set: u32) -> Techniques {
     let on = |bit: u32| f64::from(set >> bit & 1);
     Techniques { light_hit: on(0), next_event: on(1), connection: on(2), lens_splat: on(3), lens_hit: on(4) }
 }

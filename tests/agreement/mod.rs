@@ -18,7 +18,7 @@ use crate::{
 const DOUBT: f64 = 0.01;
 
 /// An estimator that is held against the others, with samples per pixel and batch.
-struct Estimator {
+pub struct Estimator {
     name: &'static str,
     techniques: Techniques,
     heuristic: Heuristic,
@@ -35,19 +35,19 @@ const CAMERA: Estimator = estimator("path", PATH, Heuristic::Balance, 32);
 const LIGHTS: Estimator = estimator("light", LIGHT, Heuristic::Balance, 32);
 
 /// For scenes that every estimator can render.
-const ALL: &[Estimator] = &[BALANCE, POWER, CAMERA, LIGHTS];
+pub const ALL: &[Estimator] = &[BALANCE, POWER, CAMERA, LIGHTS];
 /// For scenes where a mirror or glass hides something from light tracing.
-const NOT_LIGHT: &[Estimator] = &[BALANCE, POWER, CAMERA];
+pub const NOT_LIGHT: &[Estimator] = &[BALANCE, POWER, CAMERA];
 /// For scenes where a mirror or glass hides something from path tracing.
 const NOT_PATH: &[Estimator] = &[BALANCE, POWER, LIGHTS];
 
 /// Holds all estimators against the first one.
-fn agree(name: &str, subject: &Subject, estimators: &[Estimator]) {
+pub fn agree(name: &str, subject: &Subject, estimators: &[Estimator]) {
     agree_after(1, name, subject, estimators);
 }
 
 /// The same with so many times the samples, for noisy scenes.
-fn agree_after(effort: u32, name: &str, subject: &Subject, estimators: &[Estimator]) {
+pub fn agree_after(effort: u32, name: &str, subject: &Subject, estimators: &[Estimator]) {
     let pictures: Vec<_> = estimators
         .iter()
         .zip(1..)
