@@ -69,7 +69,7 @@ fn image((description, scene): &(Description, Scene), techniques: Techniques, sa
         threads: 1,
         target: Target::Samples(samples),
         width: description.film.width,
-        strictness: Strictness::Strict,
+        strictness: Strictness::Lenient,
     };
     let status = render::render(scene, &film, &job, &AtomicBool::new(false), |_| None);
     assert!(status.fault.is_none() && status.samples == samples, "{:?}", status.fault);

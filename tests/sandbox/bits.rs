@@ -187,7 +187,8 @@ fn forty_lights_are_the_same() {
         .map(|i| {
             let (x, z) = (f64::from(i % 8) * 0.4 - 1.4, f64::from(i / 8) * 0.5 - 1.0);
             let transform = format!(r#"<scale value="0.1"/><rotate x="1" angle="90"/><translate value="{x}, 2.4, {z}"/>"#);
-            shape("disk", &transform, &area(3.3 + f64::from(i % 5) * 6.1)).replace("\"area\"", "\"area$kind\"")
+            shape("disk", &transform, &(diffuse("0.3, 0.3, 0.3") + &area(3.3 + f64::from(i % 5) * 6.1)))
+                .replace("\"area\"", "\"area$kind\"")
         })
         .collect();
     small("forty", &diffuse("0.6, 0.4, 0.3"), &[lights, point(), spot(""), surroundings()].concat());

@@ -72,12 +72,12 @@ fn weights_sum_to_one(name: &str, subject: &Subject, samples: u32) {
 
 #[test]
 fn every_set_of_joins_makes_the_same_picture_in_a_ball_of_light() {
-    weights_sum_to_one("coated ball", &ball_of_light(), 256);
+    weights_sum_to_one("coated ball", &ball_of_light(), 2048);
 }
 
 #[test]
 fn every_set_of_joins_makes_the_same_picture_in_a_box() {
-    weights_sum_to_one("coated box", &box_with_a_panel(), 256);
+    weights_sum_to_one("coated box", &box_with_a_panel(), 2048);
 }
 
 /// Of each length, all light comes by hits of the light and by hits of the lens; other techniques alone lack the mirror's.
