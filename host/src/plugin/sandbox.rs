@@ -126,7 +126,8 @@ impl Sandbox {
     }
 
     /// Begins a piece of work, all instances forgotten: what a plugin kept from earlier calls cannot reach this one,
-    /// so that an image does not depend on which thread does which piece. `tile` is the piece's number.
+    /// so that an image does not depend on which thread does which piece. `tile` is the piece's number. Begin one now and then: all calls
+    /// of a piece may take [`super::TILE_LIMIT`] together.
     pub fn begin_tile(&self, tile: u64) {
         self.tile.set(tile);
         for slot in &self.slots {

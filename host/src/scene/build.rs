@@ -130,7 +130,7 @@ impl Builder<'_> {
                 self.owners.push((index, 0));
                 self.primitives.sphere(rays::Sphere { centre: center, radius }, visibility);
                 let outward = facing(*flip_normals) * to_world.matrix3.determinant().signum() as Real;
-                (Form::Sphere(axes), outward, LightExtent::Ball(Ball { center, radius, outward, both_sides: false }))
+                (Form::Sphere(axes), outward, LightExtent::Ball(Ball { center, radius, axes, outward, both_sides: false }))
             }
             Geometry::Cylinder { p0, p1, radius, to_world, flip_normals } => {
                 let (_, scale) = similarity(to_world).ok_or_else(|| unequal(shape, "cylinder"))?;
@@ -145,7 +145,7 @@ impl Builder<'_> {
                 let x = to_world.transform_vector3(local_x(*p1 - *p0)).as_vec3();
                 self.primitives.cylinder(rays::Cylinder { p0: base, p1: end, x, radius }, visibility);
                 let outward = facing(*flip_normals);
-                (Form::Cylinder(axis), outward, LightExtent::Tube(Tube { base, axis: end - base, radius, outward }))
+                (Form::Cylinder(axis), outward, LightExtent::Tube(Tube { base, axis: end - base, x, radius, outward }))
             }
             Geometry::Mesh { mesh, to_world, flip_normals } => {
                 let form = mesh_form(mesh.clone(), to_world);
@@ -164,7 +164,8 @@ impl Builder<'_> {
             crate::scene::lights::LightId(self.sources.len() as u32 - 1)
         });
         let finish = shape.material.0;
-        let mapped = self.finishes.get(finish as usize).is_some_and(Finish::mapped);
+        // A profile may depend on coordinates and tangent, and every light's are alike, whether it is a plugin or not.
+        let mapped = light.is_some() || self.finishes.get(finish as usize).is_some_and(Finish::mapped);
         self.shapes.push(Shape { form, finish, light, facing, mapped });
         Ok(())
     }
@@ -186,7 +187,8 @@ impl Builder<'_> {
         let placed = self.place(to_world);
         let position = |&[x, y, z]: &[f32; 3]| placed.transform_point3(DVec3::new(x.into(), y.into(), z.into())).as_vec3();
         let positions: Vec<Vec3> = form.mesh.positions.iter().map(position).collect();
-        let mut surface = Surface { triangles: Vec::new(), cumulative: Vec::new(), center: Vec3::ZERO };
+        let (triangles, numbers, cumulative) = (Vec::new(), Vec::new(), Vec::new());
+        let mut surface = Surface { triangles, numbers, form: form.clone(), outward, cumulative, center: Vec3::ZERO };
         let (mut sum, mut low, mut high) = (0.0, Vec3::INFINITY, Vec3::NEG_INFINITY);
         self.primitives.reserve_triangles(form.mesh.triangles.len());
         for (number, corners) in form.mesh.triangles.iter().enumerate() {
@@ -203,6 +205,7 @@ impl Builder<'_> {
                 let normal = (cross / (2.0 * area)).as_vec3();
                 sum += area;
                 surface.triangles.push(([a, b, c], normal * (form.facing(number as u32, normal) * outward)));
+                surface.numbers.push(number as u32);
                 surface.cumulative.push(sum);
                 (low, high) = (low.min(a).min(b).min(c), high.max(a).max(b).max(c));
             }

@@ -7,6 +7,8 @@ use bidir_kernel::{
     math, warp,
 };
 
+use crate::scene::shape::{MeshForm, round_mapping};
+
 /// A bound on the rounding error of a sum whose terms add up to `magnitude` in absolute value, measured along `normal`;
 /// twice the bound of eight roundings, so that both ends of a segment clear it.
 pub fn rounding(magnitude: Vec3, normal: Vec3) -> Real {
@@ -89,6 +91,8 @@ pub struct Ball {
     pub center: Vec3,
     /// In the world.
     pub radius: Real,
+    /// Its own axes, unit, in the world: coordinates and tangents follow them.
+    pub axes: [Vec3; 3],
     /// Its normals point outwards: 1, inwards: −1.
     pub outward: Real,
     /// Whether it shines behind its normals too.
@@ -102,6 +106,8 @@ pub struct Tube {
     pub base: Vec3,
     /// From there to the other end.
     pub axis: Vec3,
+    /// Where the angle is 0; what is perpendicular to the axis counts.
+    pub x: Vec3,
     /// Of the circle.
     pub radius: Real,
     /// Its normals point outwards: 1, inwards: −1.
@@ -113,6 +119,12 @@ pub struct Tube {
 pub struct Surface {
     /// Corners, in the world, and the unit normal.
     pub triangles: Vec<([Vec3; 3], Vec3)>,
+    /// The triangles' numbers in the mesh.
+    pub numbers: Vec<u32>,
+    /// The mesh: its coordinates and tangents.
+    pub form: MeshForm,
+    /// Its normals point outwards: 1, inwards: −1.
+    pub outward: Real,
     /// The areas added up: `cumulative[i]` is that of the first i + 1 triangles.
     pub cumulative: Vec<f64>,
     /// The centre of its bounding box.
@@ -178,7 +190,9 @@ impl Extent for Ellipse {
         let r = math::sqrt(warp::radius_squared(d));
         let turn = math::atan2(d.y, d.x) / (2.0 * std::f32::consts::PI);
         let uv = Vec2::new(r, if turn < 0.0 { turn + 1.0 } else { turn });
-        (self.0.at(d.x, d.y, uv), self.0.per_area)
+        let flat = &self.0;
+        let frame = Frame::from_z_and_tangent(flat.frame.z, flat.a * d.x + flat.b * d.y);
+        (Point { frame, ..flat.at(d.x, d.y, uv) }, flat.per_area)
     }
 
     #[inline]
@@ -213,7 +227,9 @@ impl Ball {
     fn at(&self, out: Vec3) -> Point {
         let arm = out * self.radius;
         let normal = out * self.outward;
-        Point::surface(self.center + arm, normal, Frame::from_z(normal), Vec2::ZERO, rounding(self.center.abs() + arm.abs(), normal))
+        let (uv, tangent) = round_mapping(&self.axes, out);
+        let frame = Frame::from_z_and_tangent(normal, tangent);
+        Point::surface(self.center + arm, normal, frame, uv, rounding(self.center.abs() + arm.abs(), normal))
     }
 
     /// 1 − cos of the cone in which `lit` sees the ball, and the squared sine; `None` from inside.
@@ -276,7 +292,7 @@ impl Extent for Ball {
 impl Extent for Tube {
     fn sample(&self, u: [Real; 2]) -> (Point, PerArea) {
         let (sin, cos) = math::sin_cos(2.0 * std::f32::consts::PI * u[0]);
-        let frame = Frame::from_z(math::normalize(self.axis).unwrap_or(Vec3::Z));
+        let frame = Frame::from_z_and_tangent(math::normalize(self.axis).unwrap_or(Vec3::Z), self.x);
         let out = frame.x * cos + frame.y * sin;
         let normal = out * self.outward;
         let (along, arm) = (self.axis * u[1], out * self.radius);
@@ -304,7 +320,9 @@ impl Extent for Surface {
         let b = warp::triangle([rest, u[1]]);
         let (q0, q1, q2) = (p0 * (1.0 - b.x - b.y), p1 * b.x, p2 * b.y);
         let offset = rounding(q0.abs() + q1.abs() + q2.abs(), normal);
-        let point = Point::surface(q0 + q1 + q2, normal, Frame::from_z_and_tangent(normal, p1 - p0), b, offset);
+        let (uv, tangent) = self.form.mapping(self.numbers[index], b.x, b.y);
+        let shading = self.form.shading_normal(self.numbers[index], b.x, b.y).map_or(normal, |shading| shading * self.outward);
+        let point = Point::surface(q0 + q1 + q2, normal, Frame::from_z_and_tangent(shading, tangent), uv, offset);
         (point, PerArea(1.0 / self.area()))
     }
 

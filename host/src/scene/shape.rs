@@ -70,14 +70,19 @@ impl Shape {
                 let radius = math::sqrt(local.x * local.x + local.y * local.y);
                 flat(normal, *x * local.x + *y * local.y, Vec2::new(radius, turn(local.y, local.x)))
             }
-            Form::Sphere([x, y, z]) => {
-                let (a, b, c) = (math::dot(local, *x), math::dot(local, *y), math::dot(local, *z));
-                let polar = math::safe_acos(c) / std::f32::consts::PI;
-                flat(normal, *y * a - *x * b, Vec2::new(turn(b, a), polar))
+            Form::Sphere(axes) => {
+                let (uv, tangent) = round_mapping(axes, local);
+                flat(normal, tangent, uv)
             }
             Form::Cylinder(axis) => flat(normal, axis.cross(at.normal), Vec2::new(turn(local.y, local.x), local.z)),
         }
     }
+}
+
+/// Surface coordinates of a sphere with those axes, and the direction in which u grows, where `out` leads from its centre.
+pub fn round_mapping([x, y, z]: &[Vec3; 3], out: Vec3) -> (Vec2, Vec3) {
+    let (a, b, c) = (math::dot(out, *x), math::dot(out, *y), math::dot(out, *z));
+    (Vec2::new(turn(b, a), math::safe_acos(c) / std::f32::consts::PI), *y * a - *x * b)
 }
 
 /// The angle of (x, y) in 0 … 1.
@@ -105,12 +110,11 @@ impl MeshForm {
 
     fn point(&self, at: &SurfacePoint, triangle: u32, shape: &Shape) -> Point {
         let (b1, b2) = (at.local.x, at.local.y);
-        let b0 = 1.0 - b1 - b2;
-        let (mut geometric, mut shading) = (at.normal, None);
-        if let Some([n0, n1, n2]) = self.corners(&self.mesh.normals, triangle) {
+        let mut geometric = at.normal;
+        let mut shading = None;
+        if !self.mesh.normals.is_empty() {
             geometric *= self.facing(triangle, geometric);
-            let mixed = Vec3::from(n0) * b0 + Vec3::from(n1) * b1 + Vec3::from(n2) * b2;
-            shading = math::normalize(self.normal_to_world * mixed);
+            shading = self.shading_normal(triangle, b1, b2);
         }
         let shading = shading.unwrap_or(geometric) * shape.facing;
         let geometric = geometric * shape.facing;
@@ -121,8 +125,15 @@ impl MeshForm {
         Point::surface(at.position, geometric, Frame::from_z_and_tangent(shading, tangent), uv, at.offset)
     }
 
+    /// The normal between the vertices' own, unit; `None` without those, or where they cancel.
+    pub fn shading_normal(&self, triangle: u32, b1: Real, b2: Real) -> Option<Vec3> {
+        let [n0, n1, n2] = self.corners(&self.mesh.normals, triangle)?;
+        let mixed = Vec3::from(n0) * (1.0 - b1 - b2) + Vec3::from(n1) * b1 + Vec3::from(n2) * b2;
+        math::normalize(self.normal_to_world * mixed)
+    }
+
     /// Surface coordinates, and the direction in which u grows. A mesh without coordinates has its barycentric ones.
-    fn mapping(&self, triangle: u32, b1: Real, b2: Real) -> (Vec2, Vec3) {
+    pub fn mapping(&self, triangle: u32, b1: Real, b2: Real) -> (Vec2, Vec3) {
         let Some([p0, p1, p2]) = self.corners(&self.mesh.positions, triangle).map(|corners| corners.map(Vec3::from)) else {
             return (Vec2::ZERO, Vec3::ZERO);
         };

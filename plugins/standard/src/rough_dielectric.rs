@@ -136,9 +136,14 @@ impl Bsdf for RoughDielectric {
         } else {
             self.specular_transmittance * ((1.0 - pair.reflectance) * refraction_factor(eta, carried))
         };
+        let pdf = densities.pdf_of_facet * densities.chance;
+        // In the far tail of the facets the density may vanish before the value does.
+        if !(pdf > 0.0) {
+            return Scatter::NONE;
+        }
         Scatter {
             value: colour * (densities.pdf_of_facet * densities.masked),
-            pdf: PerSolidAngle(densities.pdf_of_facet * densities.chance),
+            pdf: PerSolidAngle(pdf),
             pdf_rev: PerSolidAngle(densities.pdf_rev),
         }
     }
