@@ -27,14 +27,6 @@ fn ball_of_light() -> Subject {
     read(&[depth(LONGEST as i32), wide_lens("0.1, 0, 0.4"), ball].concat(), &library())
 }
 
-/// A closed box of coated metal with a panel of light.
-fn box_with_a_panel() -> Subject {
-    let walls = shape("cube", r#"<scale value="1, 1, 0.4"/>"#, &(INWARDS.to_owned() + &coated()));
-    let panel = r#"<scale value="0.8, 0.3, 1"/><rotate x="1" angle="30"/><translate value="0, 0.3, -0.2"/>"#;
-    let lit = shape("rectangle", panel, &(coated() + &area(1.0)));
-    read(&[depth(LONGEST as i32), wide_lens("0, 0, 0.35"), walls, lit].concat(), &library())
-}
-
 /// Whether some technique of the set makes every path: one that is all one walk.
 fn makes_all(set: u32) -> bool {
     set & 0b10001 != 0
@@ -73,11 +65,6 @@ fn weights_sum_to_one(name: &str, subject: &Subject, samples: u32) {
 #[test]
 fn every_set_of_joins_makes_the_same_picture_in_a_ball_of_light() {
     weights_sum_to_one("coated ball", &ball_of_light(), 2048);
-}
-
-#[test]
-fn every_set_of_joins_makes_the_same_picture_in_a_box() {
-    weights_sum_to_one("coated box", &box_with_a_panel(), 2048);
 }
 
 /// Of each length, all light comes by hits of the light and by hits of the lens; other techniques alone lack the mirror's.

@@ -17,6 +17,9 @@ const MAX_LOCALS_TOGETHER: u64 = 100_000;
 /// Blocks inside each other.
 const MAX_DEPTH: u32 = 1_000;
 
+/// Loops inside each other: what they change is carried around every one of them, and compiling takes the square of that.
+const MAX_LOOPS: u32 = 16;
+
 /// Values that the compiler may have to carry to the ends of branches: all branches and blocks, times what lives there.
 const MAX_CARRIED: u64 = 1_000_000;
 
@@ -195,16 +198,24 @@ impl<'a> Outline<'a> {
 
 /// How many blocks and ways out of them a function has.
 fn branches(body: &FunctionBody) -> Result<u64, String> {
-    let (mut count, mut depth) = (0, 0u32);
+    let mut count = 0;
+    // Of each open block, whether it is a loop.
+    let mut open: Vec<bool> = Vec::new();
+    let mut loops = 0;
     for operator in body.get_operators_reader().map_err(broken)? {
-        match operator.map_err(broken)? {
+        let operator = operator.map_err(broken)?;
+        match operator {
             Operator::Block { .. } | Operator::Loop { .. } | Operator::If { .. } => {
-                (count, depth) = (count + 1, depth + 1);
-                at_most("blocks inside each other", depth, MAX_DEPTH)?;
+                let is_loop = matches!(operator, Operator::Loop { .. });
+                count += 1;
+                loops += u32::from(is_loop);
+                open.push(is_loop);
+                at_most("loops inside each other", loops, MAX_LOOPS)?;
+                at_most("blocks inside each other", open.len() as u32, MAX_DEPTH)?;
             }
             Operator::Else | Operator::Br { .. } | Operator::BrIf { .. } => count += 1,
             Operator::BrTable { targets } => count += 1 + u64::from(targets.len()),
-            Operator::End => depth = depth.saturating_sub(1),
+            Operator::End => loops -= u32::from(open.pop().unwrap_or(false)),
             _ => {}
         }
     }

@@ -49,7 +49,7 @@ static float density(const Params *p, float cos, float d) {
 }
 
 static EvalOut eval(const Params *p, Vec3 wo, Vec3 wi) {
-    EvalOut out = {{0.0f, 0.0f, 0.0f}, 0.0f, 0.0f};
+    EvalOut out = { {0.0f, 0.0f, 0.0f}, 0.0f, 0.0f};
     if (!(wo.z > 0.0f && wi.z > 0.0f)) return out;
     const float d = max(0.0f, dot(wo, wi));
     const float f = (1.0f - p->retro) / PI + p->retro * (17.0f / (2.0f * PI) * power_15(d));

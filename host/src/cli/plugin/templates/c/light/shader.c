@@ -52,7 +52,7 @@ static float opening(const Params *p) {
 }
 
 static EvalOut eval(const Params *p, float x, float y, float z) {
-    EvalOut out = {{0.0f, 0.0f, 0.0f}, 0.0f};
+    EvalOut out = { {0.0f, 0.0f, 0.0f}, 0.0f};
     if (!(z > 0.0f)) return out;
     const float open = opening(p);
     // (x² + y²) / (1 + z) is 1 - z without cancellation.
