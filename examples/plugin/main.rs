@@ -38,7 +38,7 @@ fn radiance(balls: &[Ball], plugins: &Sandbox, mut from: Vec3, mut along: Vec3, 
             found += share * scatter.value * (160.0 / to_lamp.dot(to_lamp));
         }
         let Some(sample) = bsdf.sample(wo, [random.next(), random.next(), random.next()], Carried::Radiance) else { return found };
-        share = share * sample.weight;
+        share *= sample.weight;
         (from, along) = (at, frame.to_world(sample.wi));
     }
     found
