@@ -139,8 +139,8 @@ macro_rules! __parameter_default {
     (choice $choice:ident { $($variant:ident = $value:literal),+ }, $chosen:literal) => {
         const { [$($choice::$variant),+][$crate::parameter::place(&[$($value),+], $chosen)] }
     };
-    // What is wrong is said once, by the parameter's type or value.
-    ($($other:tt)*) => { ::core::unimplemented!() };
+    // Never compiled: what is wrong is said once, by the parameter's type or value.
+    ($($other:tt)*) => { ::core::unreachable!() };
 }
 
 #[doc(hidden)]
@@ -199,5 +199,6 @@ macro_rules! __parameter_read {
     ($reader:ident, rgb) => { $reader.rgb() };
     ($reader:ident, int) => { $reader.int() };
     ($reader:ident, bool) => { $reader.bool() };
-    ($reader:ident, $($other:tt)*) => { ::core::unimplemented!() };
+    // Never compiled: the type of the parameter is refused first.
+    ($reader:ident, $($other:tt)*) => { ::core::unreachable!() };
 }
