@@ -72,11 +72,6 @@ impl Roster {
         blocks.resize(blocks.len().next_multiple_of(16), 0);
         ShaderId { module: index as u32, offset }
     }
-
-    /// Whether there is no plugin.
-    pub fn is_empty(&self) -> bool {
-        self.entries.is_empty()
-    }
 }
 
 /// What a bad answer does.

@@ -49,11 +49,6 @@ impl Scene {
         self.geometry.stats()
     }
 
-    /// The plugins.
-    pub fn roster(&self) -> &Roster {
-        &self.roster
-    }
-
     /// The lights.
     pub fn all_lights(&self) -> &Lights {
         &self.lights
