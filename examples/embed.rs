@@ -69,11 +69,12 @@ fn main() -> image::ImageResult<()> {
     let film = FilmPlane::centred(Vec2::splat(SIZE as Real), 0.4);
     let world = World(Perspective::pinhole(Vec3::new(0.0, 0.0, 5.0), [Vec3::X, Vec3::Y, Vec3::NEG_Z], film));
     let strategy = Strategy::new(Techniques::BIDIRECTIONAL, 8);
-    let (mut light_path, mut picture) = ([const { None }; 7], Picture(vec![Spectrum::BLACK; SIZE * SIZE], 0));
+    let (mut camera_path, mut light_path) = ([const { None }; 7], [const { None }; 7]);
+    let mut picture = Picture(vec![Spectrum::BLACK; SIZE * SIZE], 0);
     for i in 0..64 * SIZE * SIZE {
         picture.1 = i / 64;
         let raster = Vec2::new((picture.1 % SIZE) as Real + 0.5, (picture.1 / SIZE) as Real + 0.5);
-        sample(&world, &strategy, &mut Independent::new(1, 0, i as u64), raster, &mut light_path, &mut picture);
+        sample(&world, &strategy, &mut Independent::new(1, 0, i as u64), raster, &mut camera_path, &mut light_path, &mut picture);
     }
     let bytes: Vec<_> = picture.0.iter().flat_map(|p| p.0.map(|v| ((v / 64.0).sqrt().min(1.0) * 255.0) as u8)).collect();
     image::save_buffer("embed.png", &bytes, SIZE as u32, SIZE as u32, image::ColorType::Rgb8)

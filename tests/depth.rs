@@ -60,7 +60,7 @@ fn long_paths_bring_all_their_light() {
 fn with_storage(subject: &Subject, strategy: &Strategy, stored: usize, samples: u32, seed: u64) -> f64 {
     let film = Film::new(&subject.description.film).expect("a film");
     let view = View::new(&subject.scene, Strictness::Strict);
-    let mut store: Vec<_> = (0..stored).map(|_| None).collect();
+    let [mut seen, mut lit] = [0; 2].map(|_| (0..stored).map(|_| None).collect::<Vec<_>>());
     while let Some(mut buffer) = film.claim(samples) {
         let unit = buffer.unit();
         for (x, y) in film.pixels(&unit) {
@@ -69,7 +69,7 @@ fn with_storage(subject: &Subject, strategy: &Strategy, stored: usize, samples: 
             let [dx, dy] = numbers.next_pair();
             let raster = Vec2::new(x as f32 + dx, y as f32 + dy);
             buffer.begin(raster);
-            sample(&view, strategy, &mut numbers, raster, &mut store, &mut buffer);
+            sample(&view, strategy, &mut numbers, raster, &mut seen, &mut lit, &mut buffer);
             buffer.end();
         }
         film.commit(buffer);

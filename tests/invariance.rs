@@ -81,7 +81,7 @@ fn any_division_into_passes_makes_the_same_bits() {
         use bidir::scene::view::View;
         use bidir_kernel::{Sampler, Vec2, Walk, sample, sampler::Independent};
         let view = View::new(&subject.scene, Strictness::Strict);
-        let mut store: Vec<_> = (0..4).map(|_| None).collect();
+        let [mut seen, mut lit] = [0; 2].map(|_| (0..4).map(|_| None).collect::<Vec<_>>());
         for &end in ends {
             while let Some(mut buffer) = film.claim(end) {
                 let unit = buffer.unit();
@@ -91,7 +91,7 @@ fn any_division_into_passes_makes_the_same_bits() {
                     let [dx, dy] = numbers.next_pair();
                     let raster = Vec2::new(x as f32 + dx, y as f32 + dy);
                     buffer.begin(raster);
-                    sample(&view, &strategy, &mut numbers, raster, &mut store, &mut buffer);
+                    sample(&view, &strategy, &mut numbers, raster, &mut seen, &mut lit, &mut buffer);
                     buffer.end();
                 }
                 film.commit(buffer);

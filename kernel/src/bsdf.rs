@@ -38,6 +38,10 @@ impl Lobe {
     pub const DELTA_TRANSMISSION: Self = Self(32);
     /// Every lobe that has a density: what a path can be joined through.
     pub const SMOOTH: Self = Self(1 | 2 | 8 | 16);
+    /// Every lobe that has a density, on the side the light came from.
+    pub const SMOOTH_REFLECTION: Self = Self(1 | 2);
+    /// Every lobe that has a density, on the other side.
+    pub const SMOOTH_TRANSMISSION: Self = Self(8 | 16);
     /// Every lobe into one direction.
     pub const DELTA: Self = Self(4 | 32);
     /// Every lobe on the side the light came from.
@@ -123,6 +127,9 @@ pub struct Scattered {
     pub lobe: Lobe,
 }
 
+/// How many directions one [`Bsdf::eval_n`] has at most.
+pub const BATCH: usize = 8;
+
 /// A surface's scattering, in its own shading frame: z is the normal; ω_o (towards where the walk came from)
 /// and ω_i (where it goes on to) are unit vectors that both point away from the surface.
 ///
@@ -136,4 +143,19 @@ pub trait Bsdf {
 
     /// Every lobe this surface can have here.
     fn lobes(&self) -> Lobe;
+
+    /// [`Bsdf::eval`] towards each of `wi`, at most [`BATCH`], into `scatters`. Worth writing where a call costs more than its answer,
+    /// as one into a sandbox does; the answers must be those of the single calls.
+    #[inline]
+    fn eval_n(&self, wo: Vec3, wi: &[Vec3], carried: Carried, scatters: &mut [Scatter]) {
+        for (scatter, wi) in scatters.iter_mut().zip(wi) {
+            *scatter = self.eval(wo, *wi, carried);
+        }
+    }
+
+    /// [`Bsdf::eval`] and [`Bsdf::sample`] for one ω_o: what a walk mostly asks at a vertex. Worth writing as [`Bsdf::eval_n`] is.
+    #[inline]
+    fn eval_and_sample(&self, wo: Vec3, wi: Vec3, u: [Real; 3], carried: Carried) -> (Scatter, Option<Scattered>) {
+        (self.eval(wo, wi, carried), self.sample(wo, u, carried))
+    }
 }

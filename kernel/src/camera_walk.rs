@@ -1,12 +1,11 @@
-//! From the camera: light hits (s = 0), next event (s = 1), and connections to the light walk's vertices.
+//! From the camera: light hits (s = 0), next event (s = 1), and the vertices that are connected to the light walk's.
 
 use crate::{
-    bsdf::{Bsdf, Carried},
+    bsdf::{Bsdf, Carried, Scatter},
     camera::Camera,
-    density::conversions,
+    density::{Chance, conversions},
     film::{Contribution, Film},
-    light::Light,
-    light_walk::LightVertex,
+    light::{Illumination, Light},
     point::{Place, Point, Ray, Segment},
     real::{Real, Vec2, Vec3},
     roulette::survive,
@@ -15,7 +14,8 @@ use crate::{
     spectrum::Spectrum,
     strategy::Strategy,
     technique::{Join, Technique},
-    vertex::{Vertex, step},
+    vertex::{Bounce, Vertex, step},
+    walk::WalkVertex,
     weight::{Side, share},
 };
 
@@ -40,21 +40,28 @@ struct End<'a> {
     joined: bool,
 }
 
-/// Traces one camera walk and joins each of its vertices.
+/// A point of a light that a vertex may be lit by.
+struct Lit<I> {
+    id: I,
+    chance: Chance,
+    sampled: Illumination,
+}
+
+/// Traces one camera walk and joins each of its vertices to the lights; returns how many it left in `store`.
 pub(crate) fn camera_walk<'s, S: Scene>(
     scene: &'s S,
     strategy: &Strategy,
     joined_length: u32,
     sampler: &mut impl Sampler,
     raster: Vec2,
-    light_path: &[Option<LightVertex<'s, S>>],
+    store: &mut [Option<WalkVertex<'s, S>>],
     film: &mut impl Film,
-) {
-    CameraWalk { scene, strategy, joined_length, sampler, film }.run(raster, light_path);
+) -> usize {
+    CameraWalk { scene, strategy, joined_length, sampler, film }.run(raster, store)
 }
 
 impl<'s, S: Scene, P: Sampler, F: Film> CameraWalk<'_, 's, S, P, F> {
-    fn run(&mut self, raster: Vec2, light_path: &[Option<LightVertex<'s, S>>]) {
+    fn run(&mut self, raster: Vec2, store: &mut [Option<WalkVertex<'s, S>>]) -> usize {
         let Strategy { techniques, heuristic, max_depth, .. } = *self.strategy;
         let scene = self.scene;
         self.sampler.seek(Walk::Camera, start::LENS);
@@ -68,6 +75,7 @@ impl<'s, S: Scene, P: Sampler, F: Film> CameraWalk<'_, 's, S, P, F> {
         let mut throughput = seen.weight;
         let (mut pdf, mut pdf_rev, mut delta) = (f64::from(seen.spread.value()), 0.0, false);
         let mut eta_scale: Real = 1.0;
+        let mut stored = 0;
         let mut length = 1;
         while length <= max_depth {
             let effort = if length == 1 { techniques.lens_splat } else { techniques.connection };
@@ -82,7 +90,7 @@ impl<'s, S: Scene, P: Sampler, F: Film> CameraWalk<'_, 's, S, P, F> {
                     let joined = length <= self.joined_length && !clipped;
                     self.light_hit(id, &at, &previous, direction, delta, &End { side: &side, throughput, length, joined });
                 }
-                return;
+                return stored;
             };
             side = side.advance(heuristic, &step(&previous, &point, direction, pdf, pdf_rev, delta, effort));
             if let Some(id) = scene.light_id_at(hit) {
@@ -90,29 +98,28 @@ impl<'s, S: Scene, P: Sampler, F: Film> CameraWalk<'_, 's, S, P, F> {
                 self.light_hit(id, &point, &previous, direction, delta, &End { side: &side, throughput, length, joined });
             }
             if length >= max_depth {
-                return;
+                return stored;
             }
-            let Some(here) = Vertex::new(point, scene.bsdf(&point, hit), -direction, Carried::Radiance) else { return };
-            if here.joins() {
-                // What is joined here makes a path of one segment more at least.
-                let end = End { side: &side, throughput, length, joined: length < self.joined_length };
-                if techniques.uses(Join::NextEvent) {
-                    self.next_event(&here, &end);
-                }
-                for light_vertex in light_path.iter().flatten() {
-                    self.connect(&here, &end, light_vertex);
-                }
+            let Some(here) = Vertex::new(point, scene.bsdf(&point, hit), -direction, Carried::Radiance) else { return stored };
+            // What is joined here makes a path of one segment more at least.
+            let joined = length < self.joined_length;
+            let bounce = self.lit_and_bounced(&here, &End { side: &side, throughput, length, joined });
+            if here.joins()
+                && joined
+                && techniques.uses(Join::Connection)
+                && let Some(slot) = store.get_mut(stored)
+            {
+                *slot = Some(WalkVertex { vertex: here, throughput, side, length });
+                stored += 1;
             }
-            let dimension = length.wrapping_mul(DIMENSIONS_PER_VERTEX);
-            self.sampler.seek(Walk::Camera, dimension + vertex::BSDF);
-            let Some(bounce) = here.bounce([self.sampler.next(), self.sampler.next(), self.sampler.next()]) else { return };
+            let Some(bounce) = bounce else { return stored };
             throughput *= bounce.weight;
             eta_scale *= bounce.eta * bounce.eta;
             if length >= self.strategy.rr_depth {
-                self.sampler.seek(Walk::Camera, dimension + vertex::ROULETTE);
+                self.sampler.seek(Walk::Camera, length.wrapping_mul(DIMENSIONS_PER_VERTEX) + vertex::ROULETTE);
                 match survive(throughput.max() * eta_scale, self.sampler.next()) {
                     Some(scale) => throughput = throughput * scale,
-                    None => return,
+                    None => return stored,
                 }
             }
             (previous, direction) = (point, bounce.direction);
@@ -120,6 +127,7 @@ impl<'s, S: Scene, P: Sampler, F: Film> CameraWalk<'_, 's, S, P, F> {
             ray = Ray::leaving(&previous, direction, Segment::Inner);
             length += 1;
         }
+        stored
     }
 
     /// s = 0: the walk landed on the light `id` at `at`, coming from `previous`.
@@ -157,29 +165,45 @@ impl<'s, S: Scene, P: Sampler, F: Film> CameraWalk<'_, 's, S, P, F> {
         });
     }
 
-    /// s = 1: points of lights, chosen for this vertex.
-    fn next_event<B: Bsdf>(&mut self, vertex: &Vertex<B>, end: &End) {
-        let count = self.strategy.techniques.next_event;
-        for turn in 0..count as u32 {
-            let dimension = end.length.wrapping_mul(DIMENSIONS_PER_VERTEX).wrapping_add(turn.wrapping_mul(NEXT_EVENT_STRIDE));
-            self.sampler.seek(Walk::Camera, dimension + vertex::ENDPOINT);
+    /// s = 1, points of lights chosen for this vertex, and where the walk goes on; the last light and that are asked for at once.
+    fn lit_and_bounced<B: Bsdf>(&mut self, vertex: &Vertex<B>, end: &End) -> Option<Bounce> {
+        let dimension = end.length.wrapping_mul(DIMENSIONS_PER_VERTEX);
+        let count = if vertex.joins() { self.strategy.techniques.next_event as u32 } else { 0 };
+        let mut last = None;
+        for turn in 0..count {
+            self.sampler.seek(Walk::Camera, dimension.wrapping_add(turn.wrapping_mul(NEXT_EVENT_STRIDE)) + vertex::ENDPOINT);
             let (pair, u) = (self.sampler.next_pair(), self.sampler.next());
-            if let Some(contribution) = self.illuminated(vertex, end, u, pair) {
-                self.film.add(contribution);
+            last = self.picked(&vertex.point, u, pair);
+            if turn + 1 < count
+                && let Some(lit) = &last
+                && let Some(scatter) = vertex.scatter(lit.sampled.direction)
+            {
+                self.next_event(vertex, end, lit, &scatter);
             }
         }
+        self.sampler.seek(Walk::Camera, dimension + vertex::BSDF);
+        let u = [self.sampler.next(), self.sampler.next(), self.sampler.next()];
+        let (scatter, bounce) = vertex.scatter_and_bounce(last.as_ref().map(|lit| lit.sampled.direction), u);
+        if let (Some(lit), Some(scatter)) = (&last, &scatter) {
+            self.next_event(vertex, end, lit, scatter);
+        }
+        bounce
     }
 
-    fn illuminated<B: Bsdf>(&self, vertex: &Vertex<B>, end: &End, u: Real, pair: [Real; 2]) -> Option<Contribution> {
-        let Strategy { techniques, heuristic, .. } = *self.strategy;
-        let point = &vertex.point;
+    fn picked(&self, point: &Point, u: Real, pair: [Real; 2]) -> Option<Lit<S::LightId>> {
         let (id, chance) = self.scene.pick_light(Some(point), u)?;
         let sampled = self.scene.light(id).illuminate(point, pair)?;
-        let scatter = vertex.scatter(sampled.direction)?;
+        Some(Lit { id, chance, sampled })
+    }
+
+    /// s = 1: the vertex lit by one point of a light.
+    fn next_event<B: Bsdf>(&mut self, vertex: &Vertex<B>, end: &End, lit: &Lit<S::LightId>, scatter: &Scatter) {
+        let Strategy { techniques, heuristic, .. } = *self.strategy;
+        let (Lit { id, chance, sampled }, point) = (lit, &vertex.point);
         let per_sample = techniques.next_event as Real * chance.0;
         let value = end.throughput * scatter.value * sampled.weight / per_sample;
         if value.is_black() || !self.scene.unoccluded(point, &sampled.point, Segment::Inner) {
-            return None;
+            return;
         }
         let exit = sampled.exit;
         let own = heuristic.of(techniques.next_event * f64::from(chance.0) * f64::from(sampled.density.value()));
@@ -189,36 +213,10 @@ impl<'s, S: Scene, P: Sampler, F: Film> CameraWalk<'_, 's, S, P, F> {
             others += heuristic.of(techniques.light_hit * f64::from(scatter.pdf.0) * to_light);
         }
         if end.joined {
-            let made = f64::from(self.scene.light_chance(id, None).0) * f64::from(exit.end.value());
+            let made = f64::from(self.scene.light_chance(*id, None).0) * f64::from(exit.end.value());
             let across = f64::from(exit.spread.value()) * to_vertex;
             others += heuristic.of(made) * end.side.sum(heuristic, across, f64::from(scatter.pdf_rev.0));
         }
-        Some(Contribution { value, weight: share(own, others) as Real, technique: Technique { s: 1, t: end.length + 1 } })
-    }
-
-    /// s, t ≥ 2: this vertex and one of the light walk's.
-    fn connect<B: Bsdf>(&mut self, vertex: &Vertex<B>, end: &End, light_vertex: &LightVertex<'s, S>) {
-        let Strategy { techniques, heuristic, .. } = *self.strategy;
-        if end.length.saturating_add(light_vertex.length) >= self.joined_length {
-            return;
-        }
-        let (near, far) = (&vertex.point, &light_vertex.vertex.point);
-        let Some((direction, squared)) = near.direction_to(far) else { return };
-        let Some(here) = vertex.scatter(direction) else { return };
-        let Some(there) = light_vertex.vertex.scatter(-direction) else { return };
-        let value = end.throughput * here.value * (there.value * light_vertex.throughput) / squared;
-        if value.is_black() || !self.scene.unoccluded(near, far, Segment::Inner) {
-            return;
-        }
-        let (there_per, here_per) = conversions(near, far, direction);
-        let to_far = f64::from(here.pdf.0) * there_per;
-        let to_near = f64::from(there.pdf.0) * here_per;
-        let others = light_vertex.side.sum(heuristic, to_far, f64::from(there.pdf_rev.0))
-            + end.side.sum(heuristic, to_near, f64::from(here.pdf_rev.0));
-        self.film.add(Contribution {
-            value,
-            weight: share(heuristic.of(techniques.connection), others) as Real,
-            technique: Technique { s: light_vertex.length + 1, t: end.length + 1 },
-        });
+        self.film.add(Contribution { value, weight: share(own, others) as Real, technique: Technique { s: 1, t: end.length + 1 } });
     }
 }

@@ -1,7 +1,7 @@
 //! From a light: emission, lens splats (t = 1), lens hits (t = 0), and the vertices that the camera walk connects to.
 
 use crate::{
-    bsdf::{Bsdf, Carried},
+    bsdf::{Bsdf, Carried, Scatter},
     camera::{Camera, Seen},
     density::{Spread, conversions},
     film::{Contribution, Film},
@@ -15,19 +15,10 @@ use crate::{
     spectrum::Spectrum,
     strategy::Strategy,
     technique::{Join, Technique},
-    vertex::{Vertex, step},
+    vertex::{Bounce, Vertex, step},
+    walk::WalkVertex,
     weight::{Side, share},
 };
-
-/// A vertex of a light walk, kept for connections.
-pub struct LightVertex<'s, S: Scene + 's> {
-    pub(crate) vertex: Vertex<S::Bsdf<'s>>,
-    /// What the walk carries as it arrives.
-    pub(crate) throughput: Spectrum,
-    pub(crate) side: Side,
-    /// Segments from the light to here.
-    pub(crate) length: u32,
-}
 
 struct LightWalk<'a, 's, S: Scene, P, F> {
     scene: &'s S,
@@ -43,7 +34,7 @@ pub(crate) fn light_walk<'s, S: Scene>(
     strategy: &Strategy,
     joined_length: u32,
     sampler: &mut impl Sampler,
-    store: &mut [Option<LightVertex<'s, S>>],
+    store: &mut [Option<WalkVertex<'s, S>>],
     film: &mut impl Film,
 ) -> usize {
     let mut walk = LightWalk { scene, strategy, joined_length, sampler, film };
@@ -51,7 +42,7 @@ pub(crate) fn light_walk<'s, S: Scene>(
 }
 
 impl<'s, S: Scene, P: Sampler, F: Film> LightWalk<'_, 's, S, P, F> {
-    fn run(&mut self, store: &mut [Option<LightVertex<'s, S>>]) -> usize {
+    fn run(&mut self, store: &mut [Option<WalkVertex<'s, S>>]) -> usize {
         let Strategy { techniques, heuristic, .. } = *self.strategy;
         let scene = self.scene;
         self.sampler.seek(Walk::Light, start::LIGHT);
@@ -97,21 +88,14 @@ impl<'s, S: Scene, P: Sampler, F: Film> LightWalk<'_, 's, S, P, F> {
             side = side.advance(heuristic, &step(&previous, &point, direction, pdf, pdf_rev, delta, effort));
             let Some(here) = Vertex::new(point, scene.bsdf(&point, hit), -direction, Carried::Importance) else { return stored };
             let dimension = length.wrapping_mul(DIMENSIONS_PER_VERTEX);
-            self.sampler.seek(Walk::Light, dimension + vertex::BSDF);
-            let bounce = here.bounce([self.sampler.next(), self.sampler.next(), self.sampler.next()]);
             seen = !(scene.hides_emitters() && scene.light_id_at(hit).is_some());
-            if here.joins() {
-                if techniques.uses(Join::LensSplat) && seen {
-                    self.sampler.seek(Walk::Light, dimension + vertex::ENDPOINT);
-                    let lens = self.sampler.next_pair();
-                    self.splat(&here, length, &side, throughput, lens);
-                }
-                if techniques.uses(Join::Connection)
-                    && let Some(slot) = store.get_mut(stored)
-                {
-                    *slot = Some(LightVertex { vertex: here, throughput, side, length });
-                    stored += 1;
-                }
+            let bounce = self.splat_and_bounced(&here, length, &side, throughput, seen);
+            if here.joins()
+                && techniques.uses(Join::Connection)
+                && let Some(slot) = store.get_mut(stored)
+            {
+                *slot = Some(WalkVertex { vertex: here, throughput, side, length });
+                stored += 1;
             }
             let Some(bounce) = bounce else { return stored };
             throughput *= bounce.weight;
@@ -155,13 +139,35 @@ impl<'s, S: Scene, P: Sampler, F: Film> LightWalk<'_, 's, S, P, F> {
         );
     }
 
+    /// t = 1, a vertex of the walk shown to the lens, and where the walk goes on; both are asked for at once.
+    fn splat_and_bounced<B: Bsdf>(
+        &mut self,
+        vertex: &Vertex<B>,
+        length: u32,
+        side: &Side,
+        throughput: Spectrum,
+        lens_sees: bool,
+    ) -> Option<Bounce> {
+        let dimension = length.wrapping_mul(DIMENSIONS_PER_VERTEX);
+        let seen = if lens_sees && vertex.joins() && self.strategy.techniques.uses(Join::LensSplat) {
+            self.sampler.seek(Walk::Light, dimension + vertex::ENDPOINT);
+            self.scene.camera().see(&vertex.point, self.sampler.next_pair())
+        } else {
+            None
+        };
+        self.sampler.seek(Walk::Light, dimension + vertex::BSDF);
+        let u = [self.sampler.next(), self.sampler.next(), self.sampler.next()];
+        let (scatter, bounce) = vertex.scatter_and_bounce(seen.as_ref().map(|seen| -seen.direction), u);
+        if let (Some(seen), Some(scatter)) = (&seen, &scatter) {
+            self.splat(&vertex.point, length, side, throughput, seen, scatter);
+        }
+        bounce
+    }
+
     /// t = 1: a vertex of the walk, shown to the lens.
-    fn splat<B: Bsdf>(&mut self, vertex: &Vertex<B>, length: u32, side: &Side, throughput: Spectrum, lens: [Real; 2]) {
+    fn splat(&mut self, point: &Point, length: u32, side: &Side, throughput: Spectrum, seen: &Seen, scatter: &Scatter) {
         let Strategy { techniques, heuristic, .. } = *self.strategy;
-        let point = &vertex.point;
-        let Some(seen) = self.scene.camera().see(point, lens) else { return };
-        let Some(scatter) = vertex.scatter(-seen.direction) else { return };
-        if !self.lens_sees(&seen, point) {
+        if !self.lens_sees(seen, point) {
             return;
         }
         let spread = f64::from(seen.spread.value());
@@ -173,7 +179,7 @@ impl<'s, S: Scene, P: Sampler, F: Film> LightWalk<'_, 's, S, P, F> {
             Spread::Parallel(_) => spread,
         };
         let on_lens = f64::from(scatter.pdf.0) * to_lens;
-        let others = side.sum(heuristic, made_by_camera, f64::from(scatter.pdf_rev.0)) + self.lens_hit_share(&seen, on_lens);
+        let others = side.sum(heuristic, made_by_camera, f64::from(scatter.pdf_rev.0)) + self.lens_hit_share(seen, on_lens);
         self.film.splat(
             seen.raster,
             Contribution {

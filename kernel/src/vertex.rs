@@ -15,6 +15,7 @@ use crate::{
 pub(crate) struct Vertex<B> {
     pub point: Point,
     pub bsdf: B,
+    pub lobes: Lobe,
     /// Towards where the walk came from, in the world and in the shading frame.
     pub from: Vec3,
     pub wo: Vec3,
@@ -36,23 +37,30 @@ impl<B: Bsdf> Vertex<B> {
     /// `None` where the walk arrived on different sides of the geometric and of the shading normal.
     #[inline]
     pub fn new(point: Point, bsdf: B, from: Vec3, carried: Carried) -> Option<Self> {
-        point.same_side(from).then(|| Self { point, bsdf, from, wo: point.frame.to_local(from), carried })
+        point.same_side(from).then(|| Self { lobes: bsdf.lobes(), wo: point.frame.to_local(from), point, bsdf, from, carried })
     }
 
     /// Whether a path can be joined here.
     #[inline]
     pub fn joins(&self) -> bool {
-        self.bsdf.lobes().intersects(Lobe::SMOOTH)
+        self.lobes.intersects(Lobe::SMOOTH)
     }
 
-    /// The smooth lobes towards `toward`, the adjoint factor of the shading normal included;
-    /// `None` where nothing is scattered there.
+    /// `toward` in the shading frame; `None` where nothing can be scattered, whatever the directions are beyond their sides.
     #[inline]
-    pub fn scatter(&self, toward: Vec3) -> Option<Scatter> {
+    pub fn local(&self, toward: Vec3) -> Option<Vec3> {
         if !self.point.same_side(toward) {
             return None;
         }
-        let mut scatter = self.bsdf.eval(self.wo, self.point.frame.to_local(toward), self.carried);
+        let wi = self.point.frame.to_local(toward);
+        let lobes = if wi.z * self.wo.z > 0.0 { Lobe::SMOOTH_REFLECTION } else { Lobe::SMOOTH_TRANSMISSION };
+        self.lobes.intersects(lobes).then_some(wi)
+    }
+
+    /// What the smooth lobes answered towards `toward`, the adjoint factor of the shading normal included;
+    /// `None` where nothing is scattered there.
+    #[inline]
+    pub fn scattered(&self, toward: Vec3, mut scatter: Scatter) -> Option<Scatter> {
         if scatter.value.is_black() {
             return None;
         }
@@ -62,10 +70,29 @@ impl<B: Bsdf> Vertex<B> {
         Some(scatter)
     }
 
+    /// The smooth lobes towards `toward`.
+    #[inline]
+    pub fn scatter(&self, toward: Vec3) -> Option<Scatter> {
+        self.scattered(toward, self.bsdf.eval(self.wo, self.local(toward)?, self.carried))
+    }
+
+    /// The smooth lobes towards `toward`, if there is such a direction, and where the walk goes on.
+    #[inline]
+    pub fn scatter_and_bounce(&self, toward: Option<Vec3>, u: [Real; 3]) -> (Option<Scatter>, Option<Bounce>) {
+        let Some((toward, wi)) = toward.and_then(|toward| Some((toward, self.local(toward)?))) else { return (None, self.bounce(u)) };
+        let (scatter, sampled) = self.bsdf.eval_and_sample(self.wo, wi, u, self.carried);
+        (self.scattered(toward, scatter), sampled.and_then(|sampled| self.gone_on(sampled)))
+    }
+
     /// Where the walk goes on.
     #[inline]
     pub fn bounce(&self, u: [Real; 3]) -> Option<Bounce> {
-        let Scattered { wi, weight, made, eta, .. } = self.bsdf.sample(self.wo, u, self.carried)?;
+        self.gone_on(self.bsdf.sample(self.wo, u, self.carried)?)
+    }
+
+    #[inline]
+    fn gone_on(&self, sampled: Scattered) -> Option<Bounce> {
+        let Scattered { wi, weight, made, eta, .. } = sampled;
         let direction = self.point.frame.to_world(wi);
         if weight.is_black() || !self.point.same_side(direction) {
             return None;

@@ -53,6 +53,8 @@ fn an_export_of_another_type_is_refused_with_both() {
     refuses(&broken(r#"(func (export "bidir_abi")"#, other), &["exports no \"bidir_abi\""]);
     let optional = r#"(func (export "bsdf_eval_n")) (func (export "bsdf_sample")"#;
     refuses(&broken(r#"(func (export "bsdf_sample")"#, optional), &["\"bsdf_eval_n\" is () -> ()", "(i32 i32 i32 i32) -> ()"]);
+    let optional = r#"(func (export "bsdf_vertex") (param i32)) (func (export "bsdf_sample")"#;
+    refuses(&broken(r#"(func (export "bsdf_sample")"#, optional), &["\"bsdf_vertex\" is (i32) -> ()", "(i32 i32 i32 f32 f32"]);
 }
 
 #[test]

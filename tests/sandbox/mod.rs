@@ -1,5 +1,6 @@
 //! Plugins are right: what a module answers is what the same shader answers natively, and every technique makes the same picture of it.
 
+mod batches;
 mod bits;
 mod delta;
 mod lights;

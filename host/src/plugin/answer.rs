@@ -47,18 +47,23 @@ const TOO_MUCH: f32 = 1e30;
 /// What rounding may add to a chance of 1.
 const CHANCE_ROUNDING: f32 = 1e-5;
 
+/// Whether all numbers are in range, by one comparison: bits of floats that are not negative sort as the floats do,
+/// and those of NaN, ∞ and negative numbers lie above. −0 lies there, too; it is told apart by [`number`].
 #[inline(always)]
-fn number(what: &'static str, value: f32) -> Result<f32, Flaw> {
-    // NaN fails both comparisons.
-    if (0.0..TOO_MUCH).contains(&value) { Ok(value) } else { Err(Flaw::OutOfRange(what, value)) }
+fn plain<const N: usize>(numbers: [f32; N]) -> bool {
+    numbers.into_iter().fold(0, |most, number| most.max(number.to_bits())) < TOO_MUCH.to_bits()
 }
 
-#[inline(always)]
-fn light(what: &'static str, rgb: [f32; 3]) -> Result<Spectrum, Flaw> {
-    for value in rgb {
-        number(what, value)?;
-    }
-    Ok(Spectrum(rgb))
+#[cold]
+fn number(what: &'static str, value: f32) -> Result<(), Flaw> {
+    // NaN fails both comparisons.
+    if (0.0..TOO_MUCH).contains(&value) { Ok(()) } else { Err(Flaw::OutOfRange(what, value)) }
+}
+
+/// What is wrong with numbers that are not plain.
+#[cold]
+fn numbers<const N: usize>(what: &'static str, rgb: [f32; 3], others: [(&'static str, f32); N]) -> Result<(), Flaw> {
+    rgb.map(|value| (what, value)).into_iter().chain(others).try_for_each(|(what, value)| number(what, value))
 }
 
 #[inline(always)]
@@ -68,10 +73,13 @@ fn unit([x, y, z]: [f32; 3]) -> Result<Vec3, Flaw> {
 }
 
 /// `bsdf_eval`'s answer.
-#[inline]
+#[inline(always)]
 pub(super) fn scatter(out: &EvalOut) -> Result<Scatter, Flaw> {
-    let value = light("the value", out.value)?;
-    let (pdf, pdf_rev) = (number("pdf", out.pdf)?, number("pdf_rev", out.pdf_rev)?);
+    let EvalOut { value: [r, g, b], pdf, pdf_rev } = *out;
+    if !plain([r, g, b, pdf, pdf_rev]) {
+        numbers("the value", out.value, [("pdf", pdf), ("pdf_rev", pdf_rev)])?;
+    }
+    let value = Spectrum(out.value);
     if pdf == 0.0 && !value.is_black() {
         return Err(Flaw::NoDensity("the value"));
     }
@@ -79,7 +87,7 @@ pub(super) fn scatter(out: &EvalOut) -> Result<Scatter, Flaw> {
 }
 
 /// `bsdf_sample`'s answer to ω_o, of a plugin that has those lobes.
-#[inline]
+#[inline(always)]
 pub(super) fn scattered(out: &SampleOut, wo_z: f32, declared: Lobe) -> Result<Option<Scattered>, Flaw> {
     if out.lobe == lobe::NONE {
         return Ok(None);
@@ -93,8 +101,11 @@ pub(super) fn scattered(out: &SampleOut, wo_z: f32, declared: Lobe) -> Result<Op
     if if lobe.intersects(Lobe::REFLECTION) { across < 0.0 } else { across > 0.0 } {
         return Err(Flaw::WrongSide);
     }
-    let weight = light("the weight", out.weight)?;
-    let (pdf, pdf_rev, eta) = (number("pdf", out.pdf)?, number("pdf_rev", out.pdf_rev)?, number("eta", out.eta)?);
+    let SampleOut { weight: [r, g, b], pdf, pdf_rev, eta, .. } = *out;
+    if !plain([r, g, b, pdf, pdf_rev, eta]) {
+        numbers("the weight", out.weight, [("pdf", pdf), ("pdf_rev", pdf_rev), ("eta", eta)])?;
+    }
+    let weight = Spectrum(out.weight);
     if pdf == 0.0 {
         return Err(Flaw::NoDensity("the sample"));
     }
@@ -110,9 +121,13 @@ pub(super) fn scattered(out: &SampleOut, wo_z: f32, declared: Lobe) -> Result<Op
 }
 
 /// `light_eval`'s answer.
-#[inline]
+#[inline(always)]
 pub(super) fn profiled(out: &ProfileOut) -> Result<Profiled, Flaw> {
-    let (radiance, pdf) = (light("the radiance", out.radiance)?, number("pdf", out.pdf)?);
+    let ProfileOut { radiance: [r, g, b], pdf } = *out;
+    if !plain([r, g, b, pdf]) {
+        numbers("the radiance", out.radiance, [("pdf", pdf)])?;
+    }
+    let radiance = Spectrum(out.radiance);
     if pdf == 0.0 && !radiance.is_black() {
         return Err(Flaw::NoDensity("the radiance"));
     }
@@ -120,7 +135,7 @@ pub(super) fn profiled(out: &ProfileOut) -> Result<Profiled, Flaw> {
 }
 
 /// `light_emit`'s answer.
-#[inline]
+#[inline(always)]
 pub(super) fn emitted(out: &EmitOut) -> Result<Option<Emitted>, Flaw> {
     let profiled = profiled(&ProfileOut { radiance: out.radiance, pdf: out.pdf })?;
     if out.pdf == 0.0 {

@@ -11,7 +11,7 @@ use wasmtime::{InstancePre, Linker};
 
 use super::{
     engine::{Clock, Engine},
-    fault::Fault,
+    fault::{Cause, Fault},
     instance::{Failure, Instance, State},
     manifest::Manifest,
     outline::Outline,
@@ -79,7 +79,7 @@ impl Module {
 
     /// Asks for its version, and makes one instance. No render is lost if that fails: it is the module that is refused.
     fn try_out(&mut self) -> Result<()> {
-        let refused = |failure| Error { blame: Blame::Input, ..self.fault(failure).into() };
+        let refused = |failure: Failure| Error { blame: Blame::Input, ..self.fault(*failure).into() };
         let theirs = Instance::version(&self.compiled).map_err(refused)?;
         if !VERSION.accepts(theirs) {
             let thing = format!(
@@ -128,7 +128,7 @@ impl Module {
         Instance::new(&self.compiled, self.clock.clone(), self.manifest.kind, blocks)
     }
 
-    pub(super) fn fault(&self, (export, cause): Failure) -> Fault {
+    pub(super) fn fault(&self, (export, cause): (&'static str, Cause)) -> Fault {
         Fault { file: self.file.clone(), export, cause }
     }
 }

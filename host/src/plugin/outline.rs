@@ -179,7 +179,7 @@ impl<'a> Outline<'a> {
                 (export::LIGHT_EVAL, [vec![i; 2], vec![f; 5]].concat(), vec![]),
             ]),
         }
-        let optional = [(export::BSDF_EVAL_N, vec![i; 4], vec![])];
+        let optional = [(export::BSDF_EVAL_N, vec![i; 4], vec![]), (export::BSDF_VERTEX, [vec![i; 3], vec![f; 9]].concat(), vec![])];
         let there = |name: &str| self.signatures.iter().any(|(known, _)| known == name);
         needed.extend(optional.into_iter().filter(|(name, ..)| there(name)));
         for (name, parameters, results) in needed {

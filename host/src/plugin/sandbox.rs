@@ -6,8 +6,8 @@ use std::{
     sync::Arc,
 };
 
-use bidir_abi::{EmitOut, EvalOut, ProfileOut, SampleOut, carried};
-use bidir_kernel::{Bsdf, Carried, Emitted, Lobe, Profile, Real, Scatter, Scattered, Spectrum, Vec2, Vec3, profile::Profiled};
+use bidir_abi::{EmitOut, EvalOut, EvalRecord, ProfileOut, SampleOut, VertexOut, carried};
+use bidir_kernel::{BATCH, Bsdf, Carried, Emitted, Lobe, Profile, Real, Scatter, Scattered, Spectrum, Vec2, Vec3, profile::Profiled};
 
 use super::{
     answer::{self, Flaw},
@@ -210,7 +210,7 @@ impl Sandbox {
     #[cold]
     fn break_off(&self, id: ShaderId, failure: Failure) {
         self.faulted.set(true);
-        self.fault.borrow_mut().get_or_insert_with(|| self.roster.entries[id.module as usize].module.fault(failure));
+        self.fault.borrow_mut().get_or_insert_with(|| self.roster.entries[id.module as usize].module.fault(*failure));
     }
 
     /// Leaves a bad answer out.
@@ -220,7 +220,7 @@ impl Sandbox {
         let parameters = module.manifest().words(&blocks[id.offset as usize..]);
         let entry = Quarantined { file: module.file().to_owned(), asked, flaw, parameters, count: 1, tile: self.tile.get() };
         if self.strictness == Strictness::Strict {
-            self.break_off(id, (asked.export(), Cause::Refused(format!("{flaw}, for {asked}"))));
+            self.break_off(id, Box::new((asked.export(), Cause::Refused(format!("{flaw}, for {asked}")))));
         }
         self.quarantine.borrow_mut().add(entry);
     }
@@ -236,30 +236,80 @@ pub struct SandboxedBsdf<'a> {
 impl Bsdf for SandboxedBsdf<'_> {
     #[inline]
     fn eval(&self, wo: Vec3, wi: Vec3, carried: Carried) -> Scatter {
-        let (sandbox, id) = (self.sandbox, self.id);
-        let (wo, wi) = (wo.to_array(), wi.to_array());
-        let Some(bytes) = sandbox.ask(id, |instance, block| instance.bsdf_eval(block, code(carried), wo, wi)) else { return Scatter::NONE };
-        answer::scatter(&EvalOut::from_bytes(&bytes)).unwrap_or_else(|flaw| {
-            sandbox.refuse(id, Asked::Eval { wo, wi, carried }, flaw);
-            Scatter::NONE
-        })
+        let answered = self.sandbox.ask(self.id, |instance, block| {
+            instance.bsdf_eval(block, code(carried), wo.to_array(), wi.to_array())?;
+            Ok(self.evaluated(&EvalOut::from_bytes(instance.record()), wo, wi, carried))
+        });
+        answered.unwrap_or(Scatter::NONE)
     }
 
     #[inline]
     fn sample(&self, wo: Vec3, u: [Real; 3], carried: Carried) -> Option<Scattered> {
-        let (sandbox, id) = (self.sandbox, self.id);
-        let wo = wo.to_array();
-        let bytes = sandbox.ask(id, |instance, block| instance.bsdf_sample(block, code(carried), wo, u))?;
-        let lobes = sandbox.roster.entries[id.module as usize].lobes;
-        answer::scattered(&SampleOut::from_bytes(&bytes), wo[2], lobes).unwrap_or_else(|flaw| {
-            sandbox.refuse(id, Asked::Sample { wo, u, carried }, flaw);
-            None
-        })
+        let answered = self.sandbox.ask(self.id, |instance, block| {
+            instance.bsdf_sample(block, code(carried), wo.to_array(), u)?;
+            Ok(self.sampled(&SampleOut::from_bytes(instance.record()), wo, u, carried))
+        });
+        answered.flatten()
     }
 
     #[inline]
     fn lobes(&self) -> Lobe {
         self.sandbox.roster.entries[self.id.module as usize].lobes
+    }
+
+    #[inline]
+    fn eval_n(&self, wo: Vec3, wi: &[Vec3], carried: Carried, scatters: &mut [Scatter]) {
+        if (2..=BATCH).contains(&wi.len()) {
+            let answered = self.sandbox.ask(self.id, |instance, block| {
+                let asked = instance.bsdf_eval_n(block, code(carried), wo.to_array(), wi)?;
+                if asked {
+                    for ((scatter, record), wi) in scatters.iter_mut().zip(instance.pairs()).zip(wi) {
+                        *scatter = self.evaluated(&EvalRecord::from_bytes(record).out, wo, *wi, carried);
+                    }
+                }
+                Ok(asked)
+            });
+            if answered != Some(false) {
+                return;
+            }
+        }
+        for (scatter, wi) in scatters.iter_mut().zip(wi) {
+            *scatter = self.eval(wo, *wi, carried);
+        }
+    }
+
+    #[inline]
+    fn eval_and_sample(&self, wo: Vec3, wi: Vec3, u: [Real; 3], carried: Carried) -> (Scatter, Option<Scattered>) {
+        let answered = self.sandbox.ask(self.id, |instance, block| {
+            if !instance.bsdf_vertex(block, code(carried), wo.to_array(), wi.to_array(), u)? {
+                return Ok(None);
+            }
+            let VertexOut { eval, sample } = VertexOut::from_bytes(instance.record());
+            Ok(Some((self.evaluated(&eval, wo, wi, carried), self.sampled(&sample, wo, u, carried))))
+        });
+        match answered {
+            Some(Some(answer)) => answer,
+            Some(None) => (self.eval(wo, wi, carried), self.sample(wo, u, carried)),
+            None => (Scatter::NONE, None),
+        }
+    }
+}
+
+impl SandboxedBsdf<'_> {
+    #[inline(always)]
+    fn evaluated(&self, out: &EvalOut, wo: Vec3, wi: Vec3, carried: Carried) -> Scatter {
+        answer::scatter(out).unwrap_or_else(|flaw| {
+            self.sandbox.refuse(self.id, Asked::Eval { wo: wo.to_array(), wi: wi.to_array(), carried }, flaw);
+            Scatter::NONE
+        })
+    }
+
+    #[inline(always)]
+    fn sampled(&self, out: &SampleOut, wo: Vec3, u: [Real; 3], carried: Carried) -> Option<Scattered> {
+        answer::scattered(out, wo.z, self.lobes()).unwrap_or_else(|flaw| {
+            self.sandbox.refuse(self.id, Asked::Sample { wo: wo.to_array(), u, carried }, flaw);
+            None
+        })
     }
 }
 
@@ -283,23 +333,27 @@ const DARK: Profiled = Profiled { radiance: Spectrum::BLACK, pdf: bidir_kernel::
 impl Profile for SandboxedProfile<'_> {
     #[inline]
     fn eval(&self, uv: Vec2, direction: Vec3) -> Profiled {
-        let (sandbox, id) = (self.sandbox, self.id);
         let (uv, w) = (uv.to_array(), direction.to_array());
-        let Some(bytes) = sandbox.ask(id, |instance, block| instance.light_eval(block, uv, w)) else { return DARK };
-        answer::profiled(&ProfileOut::from_bytes(&bytes)).unwrap_or_else(|flaw| {
-            sandbox.refuse(id, Asked::Profile { uv, w }, flaw);
-            DARK
-        })
+        let answered = self.sandbox.ask(self.id, |instance, block| {
+            instance.light_eval(block, uv, w)?;
+            Ok(answer::profiled(&ProfileOut::from_bytes(instance.record())).unwrap_or_else(|flaw| {
+                self.sandbox.refuse(self.id, Asked::Profile { uv, w }, flaw);
+                DARK
+            }))
+        });
+        answered.unwrap_or(DARK)
     }
 
     #[inline]
     fn emit(&self, uv: Vec2, u: [Real; 2]) -> Option<Emitted> {
-        let (sandbox, id) = (self.sandbox, self.id);
         let uv = uv.to_array();
-        let bytes = sandbox.ask(id, |instance, block| instance.light_emit(block, uv, u))?;
-        answer::emitted(&EmitOut::from_bytes(&bytes)).unwrap_or_else(|flaw| {
-            sandbox.refuse(id, Asked::Emit { uv, u }, flaw);
-            None
-        })
+        let answered = self.sandbox.ask(self.id, |instance, block| {
+            instance.light_emit(block, uv, u)?;
+            Ok(answer::emitted(&EmitOut::from_bytes(instance.record())).unwrap_or_else(|flaw| {
+                self.sandbox.refuse(self.id, Asked::Emit { uv, u }, flaw);
+                None
+            }))
+        });
+        answered.flatten()
     }
 }

@@ -11,7 +11,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use bidir_kernel::{LightVertex, Sampler, Strategy, Vec2, Walk, sample};
+use bidir_kernel::{Sampler, Strategy, Vec2, Walk, WalkVertex, sample};
 
 use crate::{
     film::{Exposure, Store},
@@ -206,7 +206,7 @@ fn work<S: Store, N: Source>(scene: &Scene, film: &S, job: &Job, end: u32, stop:
     let _guard = Guard(film);
     let clock = cpu_time::ThreadTime::now();
     let view = View::new(scene, job.strictness);
-    let mut light_path = light_path(&job.strategy);
+    let (mut camera_path, mut light_path) = (storage(&job.strategy), storage(&job.strategy));
     let mut begun = 0;
     while !stop.asked() {
         let Some(mut buffer) = film.claim(end) else { break };
@@ -221,7 +221,7 @@ fn work<S: Store, N: Source>(scene: &Scene, film: &S, job: &Job, end: u32, stop:
             let [dx, dy] = numbers.next_pair();
             let raster = Vec2::new(x as f32 + dx, y as f32 + dy);
             buffer.begin(raster);
-            sample(&view, &job.strategy, &mut numbers, raster, &mut light_path, &mut buffer);
+            sample(&view, &job.strategy, &mut numbers, raster, &mut camera_path, &mut light_path, &mut buffer);
             if view.sandbox().faulted() {
                 // Nothing of this tile is known to be whole. It is handed in empty, so that the tiles after it still arrive.
                 stop.faulted.store(true, Ordering::Relaxed);
@@ -236,8 +236,8 @@ fn work<S: Store, N: Source>(scene: &Scene, film: &S, job: &Job, end: u32, stop:
     Worked { begun, cpu: clock.elapsed(), rays: view.rays(), quarantine, fault }
 }
 
-/// Storage for the light walk's vertices: enough for the longest path that is joined.
-fn light_path<'s>(strategy: &Strategy) -> Vec<Option<LightVertex<'s, View<'s>>>> {
+/// Storage for one walk's vertices: enough for the longest path that is joined.
+fn storage<'s>(strategy: &Strategy) -> Vec<Option<WalkVertex<'s, View<'s>>>> {
     let length = strategy.max_depth.min(LONGEST_JOINED).saturating_sub(1);
     (0..length).map(|_| None).collect()
 }

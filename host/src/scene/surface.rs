@@ -1,6 +1,6 @@
 //! A shape's surface at a hit: a shader with its parameters looked up, one on each side.
 
-use bidir_kernel::{Bsdf, Carried, Lobe, Real, Scatter, Scattered, Vec2, Vec3};
+use bidir_kernel::{BATCH, Bsdf, Carried, Lobe, Real, Scatter, Scattered, Vec2, Vec3};
 use bidir_standard as standard;
 
 use crate::{
@@ -59,6 +59,16 @@ impl Bsdf for Shader {
     fn lobes(&self) -> Lobe {
         of_shader!(self, shader => shader.lobes())
     }
+
+    #[inline]
+    fn eval_n(&self, wo: Vec3, wi: &[Vec3], carried: Carried, scatters: &mut [Scatter]) {
+        of_shader!(self, shader => shader.eval_n(wo, wi, carried, scatters));
+    }
+
+    #[inline]
+    fn eval_and_sample(&self, wo: Vec3, wi: Vec3, u: [Real; 3], carried: Carried) -> (Scatter, Option<Scattered>) {
+        of_shader!(self, shader => shader.eval_and_sample(wo, wi, u, carried))
+    }
 }
 
 /// A surface at a point: its finish, asked where the point lies. It is three words, so that vertices stay cheap to move;
@@ -89,8 +99,10 @@ impl Surface<'_> {
         };
         match &recipe.shader {
             Ready::Fixed(shader) => question.put(shader, turn),
-            Ready::Plugin(id) => {
-                if let Material::Plugin(PluginShader { textures, .. }) = &recipe.material {
+            Ready::Plugin(id, _) => {
+                if let Material::Plugin(PluginShader { textures, .. }) = &recipe.material
+                    && !textures.is_empty()
+                {
                     set_textured(self.sandbox, *id, textures, self.uv);
                 }
                 question.put(&self.sandbox.bsdf(*id), turn)
@@ -131,6 +143,46 @@ impl Question for Sample {
     }
 }
 
+struct EvalMany<'q> {
+    wo: Vec3,
+    wi: &'q [Vec3],
+    carried: Carried,
+    scatters: &'q mut [Scatter],
+}
+
+impl Question for EvalMany<'_> {
+    type Answer = ();
+
+    #[inline(always)]
+    fn put(self, shader: &impl Bsdf, turn: Real) {
+        if turn > 0.0 {
+            return shader.eval_n(self.wo, self.wi, self.carried, self.scatters);
+        }
+        let mut seen_turned = [Vec3::ZERO; BATCH];
+        for (there, wi) in seen_turned.iter_mut().zip(self.wi) {
+            *there = turned(*wi, turn);
+        }
+        shader.eval_n(turned(self.wo, turn), &seen_turned[..self.wi.len().min(BATCH)], self.carried, self.scatters);
+    }
+}
+
+struct EvalAndSample {
+    wo: Vec3,
+    wi: Vec3,
+    u: [Real; 3],
+    carried: Carried,
+}
+
+impl Question for EvalAndSample {
+    type Answer = (Scatter, Option<Scattered>);
+
+    #[inline(always)]
+    fn put(self, shader: &impl Bsdf, turn: Real) -> Self::Answer {
+        let (scatter, sampled) = shader.eval_and_sample(turned(self.wo, turn), turned(self.wi, turn), self.u, self.carried);
+        (scatter, sampled.map(|sampled| Scattered { wi: turned(sampled.wi, turn), ..sampled }))
+    }
+}
+
 #[inline(always)]
 fn turned(w: Vec3, turn: Real) -> Vec3 {
     Vec3::new(w.x, w.y, w.z * turn)
@@ -150,6 +202,16 @@ impl Bsdf for Surface<'_> {
     #[inline]
     fn lobes(&self) -> Lobe {
         self.finish.lobes_at(self.uv)
+    }
+
+    #[inline]
+    fn eval_n(&self, wo: Vec3, wi: &[Vec3], carried: Carried, scatters: &mut [Scatter]) {
+        self.ask(wo, EvalMany { wo, wi, carried, scatters });
+    }
+
+    #[inline]
+    fn eval_and_sample(&self, wo: Vec3, wi: Vec3, u: [Real; 3], carried: Carried) -> (Scatter, Option<Scattered>) {
+        self.ask(wo, EvalAndSample { wo, wi, u, carried })
     }
 }
 
@@ -179,8 +241,8 @@ enum Ready {
     Fixed(Shader),
     /// A built-in one whose parameters a texture decides.
     Varying,
-    /// A module's.
-    Plugin(ShaderId),
+    /// A module's, with its lobes.
+    Plugin(ShaderId, Lobe),
 }
 
 #[derive(Clone, Debug)]
@@ -243,7 +305,7 @@ impl Recipe {
         };
         let mut recipe = Self { material: material.clone(), inner_reflectance, shader: Ready::Varying };
         if let Material::Plugin(shader) = material {
-            recipe.shader = Ready::Plugin(roster.add(&shader.module, &shader.block));
+            recipe.shader = Ready::Plugin(roster.add(&shader.module, &shader.block), shader.module.manifest().lobes());
         } else if !recipe.varies() {
             recipe.shader = Ready::Fixed(recipe.looked_up(Vec2::ZERO));
         }
@@ -265,10 +327,10 @@ impl Recipe {
 
     #[inline]
     fn lobes(&self, uv: Vec2) -> Lobe {
-        match (&self.shader, &self.material) {
-            (Ready::Fixed(shader), _) => shader.lobes(),
-            (_, Material::Plugin(shader)) => shader.module.manifest().lobes(),
-            _ => self.looked_up(uv).lobes(),
+        match &self.shader {
+            Ready::Fixed(shader) => shader.lobes(),
+            Ready::Plugin(_, lobes) => *lobes,
+            Ready::Varying => self.looked_up(uv).lobes(),
         }
     }
 

@@ -19,6 +19,10 @@ pub const BSDF_SAMPLE: &str = "bsdf_sample";
 /// `(records i32, n i32, params i32, carried i32) -> ()`, optional: fills in the answers of `n` [`EvalRecord`](crate::EvalRecord)s.
 pub const BSDF_EVAL_N: &str = "bsdf_eval_n";
 
+/// `(out i32, params i32, carried i32, wo.xyz f32, wi.xyz f32, u.xyz f32) -> ()`, optional: [`BSDF_EVAL`] and [`BSDF_SAMPLE`] in one call;
+/// writes a [`VertexOut`](crate::VertexOut).
+pub const BSDF_VERTEX: &str = "bsdf_vertex";
+
 /// `(out i32, params i32, uv.xy f32, u.xy f32) -> ()`: writes an [`EmitOut`](crate::EmitOut).
 pub const LIGHT_EMIT: &str = "light_emit";
 

@@ -15,5 +15,5 @@ pub mod manifest;
 pub mod record;
 pub mod version;
 
-pub use record::{EmitOut, EvalOut, EvalRecord, ProfileOut, SampleOut};
+pub use record::{EmitOut, EvalOut, EvalRecord, ProfileOut, SampleOut, VertexOut};
 pub use version::{VERSION, Version};

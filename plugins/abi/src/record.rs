@@ -1,5 +1,7 @@
 //! What a module writes into the host's region. `repr(C)` is the layout of the ABI; bytes are little-endian.
 
+use core::mem::offset_of;
+
 macro_rules! record {
     ($(#[$doc:meta])* $name:ident, $bytes:literal: $($(#[$field_doc:meta])* $field:ident: $type:ty,)+) => {
         $(#[$doc])*
@@ -14,20 +16,16 @@ macro_rules! record {
             pub const BYTES: usize = $bytes;
 
             /// Reads a record.
-            #[inline]
+            #[inline(always)]
             pub fn from_bytes(bytes: &[u8; $bytes]) -> Self {
-                let mut words = bytes.as_chunks().0.iter().copied();
-                let mut next = move || words.next().unwrap_or_default();
-                Self { $($field: Words::read(&mut next),)+ }
+                Self { $($field: Words::read(bytes, offset_of!(Self, $field)),)+ }
             }
 
             /// Writes a record.
-            #[inline]
+            #[inline(always)]
             pub fn to_bytes(&self) -> [u8; $bytes] {
                 let mut bytes = [0; $bytes];
-                let mut words = bytes.as_chunks_mut().0.iter_mut();
-                let mut put = |word| words.next().into_iter().for_each(|slot| *slot = word);
-                $(self.$field.write(&mut put);)+
+                $(self.$field.write(&mut bytes, offset_of!(Self, $field));)+
                 bytes
             }
         }
@@ -76,6 +74,15 @@ record! {
 }
 
 record! {
+    /// What the smooth lobes do between a pair of directions, and a sampled direction.
+    VertexOut, 60:
+    /// At 0.
+    eval: EvalOut,
+    /// At 20.
+    sample: SampleOut,
+}
+
+record! {
     /// A sampled direction of emission.
     EmitOut, 28:
     /// Unit; it leaves the light; at 0.
@@ -95,22 +102,22 @@ record! {
     pdf: f32,
 }
 
-/// A field: a row of 4-byte words.
+/// A field, somewhere in the bytes of a record.
 trait Words {
-    fn read(next: &mut impl FnMut() -> [u8; 4]) -> Self;
-    fn write(&self, put: &mut impl FnMut([u8; 4]));
+    fn read(bytes: &[u8], at: usize) -> Self;
+    fn write(&self, bytes: &mut [u8], at: usize);
 }
 
 macro_rules! word {
     ($($type:ty),+) => {$(
         impl Words for $type {
             #[inline(always)]
-            fn read(next: &mut impl FnMut() -> [u8; 4]) -> Self {
-                Self::from_le_bytes(next())
+            fn read(bytes: &[u8], at: usize) -> Self {
+                Self::from_le_bytes([bytes[at], bytes[at + 1], bytes[at + 2], bytes[at + 3]])
             }
             #[inline(always)]
-            fn write(&self, put: &mut impl FnMut([u8; 4])) {
-                put(self.to_le_bytes());
+            fn write(&self, bytes: &mut [u8], at: usize) {
+                bytes[at..at + 4].copy_from_slice(&self.to_le_bytes());
             }
         }
     )+};
@@ -120,32 +127,35 @@ word! { f32, u32 }
 
 impl Words for [f32; 3] {
     #[inline(always)]
-    fn read(next: &mut impl FnMut() -> [u8; 4]) -> Self {
-        core::array::from_fn(|_| f32::read(next))
+    fn read(bytes: &[u8], at: usize) -> Self {
+        [Words::read(bytes, at), Words::read(bytes, at + 4), Words::read(bytes, at + 8)]
     }
     #[inline(always)]
-    fn write(&self, put: &mut impl FnMut([u8; 4])) {
-        self.iter().for_each(|component| component.write(put));
+    fn write(&self, bytes: &mut [u8], at: usize) {
+        self.iter().enumerate().for_each(|(i, component)| component.write(bytes, at + 4 * i));
     }
 }
 
-impl Words for EvalOut {
-    #[inline(always)]
-    fn read(next: &mut impl FnMut() -> [u8; 4]) -> Self {
-        Self { value: Words::read(next), pdf: Words::read(next), pdf_rev: Words::read(next) }
-    }
-    #[inline(always)]
-    fn write(&self, put: &mut impl FnMut([u8; 4])) {
-        self.value.write(put);
-        self.pdf.write(put);
-        self.pdf_rev.write(put);
-    }
+macro_rules! inner {
+    ($($type:ident),+) => {$(
+        impl Words for $type {
+            #[inline(always)]
+            fn read(bytes: &[u8], at: usize) -> Self {
+                bytes[at..].first_chunk().map(Self::from_bytes).unwrap_or_default()
+            }
+            #[inline(always)]
+            fn write(&self, bytes: &mut [u8], at: usize) {
+                bytes[at..at + Self::BYTES].copy_from_slice(&self.to_bytes());
+            }
+        }
+    )+};
 }
+
+inner! { EvalOut, SampleOut }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use core::mem::offset_of;
 
     #[test]
     fn fields_lie_where_the_abi_page_puts_them() {
@@ -154,6 +164,7 @@ mod tests {
         assert_eq!([offset_of!(SampleOut, pdf), offset_of!(SampleOut, pdf_rev)], [24, 28]);
         assert_eq!([offset_of!(SampleOut, lobe), offset_of!(SampleOut, eta)], [32, 36]);
         assert_eq!([offset_of!(EvalRecord, wo), offset_of!(EvalRecord, wi), offset_of!(EvalRecord, out)], [0, 12, 24]);
+        assert_eq!([offset_of!(VertexOut, eval), offset_of!(VertexOut, sample)], [0, 20]);
         assert_eq!([offset_of!(EmitOut, direction), offset_of!(EmitOut, radiance), offset_of!(EmitOut, pdf)], [0, 12, 24]);
         assert_eq!([offset_of!(ProfileOut, radiance), offset_of!(ProfileOut, pdf)], [0, 12]);
     }

@@ -9,7 +9,7 @@ use core::{cell::UnsafeCell, slice};
 
 use crate::{
     Bsdf, Parameters, Profile,
-    abi::{EmitOut, EvalOut, EvalRecord, ProfileOut, SampleOut, limit::SCRATCH_ALIGNMENT},
+    abi::{EmitOut, EvalOut, EvalRecord, ProfileOut, SampleOut, VertexOut, limit::SCRATCH_ALIGNMENT},
     answer,
 };
 
@@ -109,6 +109,25 @@ pub unsafe fn eval_n<P: Parameters, B: Bsdf>(shader: impl Fn(&P) -> B, records: 
 /// # Safety
 /// As the ABI promises.
 #[inline(always)]
+pub unsafe fn vertex<P: Parameters, B: Bsdf>(
+    shader: impl Fn(&P) -> B,
+    out: *mut VertexOut,
+    params: *const u8,
+    carried: i32,
+    wo: [f32; 3],
+    wi: [f32; 3],
+    u: [f32; 3],
+) {
+    // SAFETY: the caller's promise.
+    let shader = shader(&unsafe { parameters(params) });
+    let answer = VertexOut { eval: answer::eval(&shader, carried, wo, wi), sample: answer::sample(&shader, carried, wo, u) };
+    // SAFETY: the caller's promise.
+    unsafe { out.write(answer) }
+}
+
+/// # Safety
+/// As the ABI promises.
+#[inline(always)]
 pub unsafe fn profile<P: Parameters, L: Profile>(
     light: impl Fn(&P) -> L,
     out: *mut ProfileOut,
@@ -159,7 +178,7 @@ macro_rules! __export_bsdf {
     ($parameters:ty => $shader:expr) => {
         #[cfg(target_arch = "wasm32")]
         const _: () = {
-            use $crate::abi::{EvalOut, EvalRecord, SampleOut};
+            use $crate::abi::{EvalOut, EvalRecord, SampleOut, VertexOut};
 
             $crate::__export_plugin!();
 
@@ -199,6 +218,26 @@ macro_rules! __export_bsdf {
             unsafe extern "C" fn bsdf_eval_n(records: *mut EvalRecord, n: i32, params: *const u8, carried: i32) {
                 // SAFETY: the host keeps the ABI.
                 unsafe { $crate::export::eval_n::<$parameters, _>($shader, records, n, params, carried) }
+            }
+
+            #[unsafe(no_mangle)]
+            unsafe extern "C" fn bsdf_vertex(
+                out: *mut VertexOut,
+                params: *const u8,
+                carried: i32,
+                ox: f32,
+                oy: f32,
+                oz: f32,
+                ix: f32,
+                iy: f32,
+                iz: f32,
+                ux: f32,
+                uy: f32,
+                uz: f32,
+            ) {
+                let (wo, wi, u) = ([ox, oy, oz], [ix, iy, iz], [ux, uy, uz]);
+                // SAFETY: the host keeps the ABI.
+                unsafe { $crate::export::vertex::<$parameters, _>($shader, out, params, carried, wo, wi, u) }
             }
         };
     };
