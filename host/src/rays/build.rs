@@ -76,16 +76,17 @@ impl Primitives {
 }
 
 fn binary_tree(bounds: &[Bounds]) -> Bvh2 {
-    /// Of all nodes, how many reinsertion tries to place better.
-    const REINSERTED: f32 = 0.05;
+    /// How many nodes reinsertion tries to place better, and which share that is at least and at most: it takes a quarter of a build.
+    const REINSERTED: f32 = 150_000.0;
+    const SHARE: [f32; 2] = [0.05, 0.15];
     /// Below this many primitives the whole tree is worth improving.
     const SMALL: usize = 10_000;
     let boxes: Vec<Aabb> = bounds.iter().map(|b| Aabb::new(b.min.into(), b.max.into())).collect();
     let indices = (0..boxes.len() as u32).collect();
     let search = PlocSearchDistance::Medium;
     let mut binary = PlocBuilder::with_capacity(boxes.len()).build(search, &boxes, indices, SortPrecision::U64, 3);
-    let reinserted = if boxes.len() < SMALL { 1.0 } else { REINSERTED };
-    ReinsertionOptimizer::default().run(&mut binary, reinserted, None);
+    let share = if boxes.len() < SMALL { 1.0 } else { (REINSERTED / boxes.len() as f32).clamp(SHARE[0], SHARE[1]) };
+    ReinsertionOptimizer::default().run(&mut binary, share, None);
     binary
 }
 

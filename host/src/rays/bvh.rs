@@ -1,6 +1,6 @@
 //! The tree and the way of a ray through it.
 
-use std::mem::size_of_val;
+use std::{cell::RefCell, mem::size_of_val};
 
 use bidir_kernel::Ray;
 use glam::DVec3;
@@ -11,8 +11,9 @@ use super::{
     build::BuildStats,
     cylinder::RoundCylinder,
     disk::FlatDisk,
+    lanes::{Lanes, Machine, Work},
     nearest::{Key, Nearest},
-    node::{Child, Leaf, Node},
+    node::{Child, Leaf, Node, Slabs, WIDTH},
     primitives::PrimitiveId,
     probe::Probe,
     sphere::Sphere,
@@ -34,6 +35,8 @@ pub struct Bvh {
     pub(super) stats: BuildStats,
     bounds: Bounds,
     some_hidden: bool,
+    machine: Machine,
+    triangles: Triangles,
 }
 
 /// A shape and whose it is.
@@ -45,6 +48,73 @@ pub(super) struct Owned<T> {
 
 /// A subtree that waits for the ray, and where the ray enters it.
 type Waiting = (Child, f32);
+
+const NONE: Waiting = (Child(0), 0.0);
+
+/// As many subtrees as wait in all but degenerate trees.
+const STACK: usize = 512;
+
+thread_local! {
+    /// Kept from ray to ray: clearing it would cost as much as a ray in a small tree.
+    static WAITING: RefCell<[Waiting; STACK]> = const { RefCell::new([NONE; STACK]) };
+}
+
+/// How rays meet triangles.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Triangles {
+    /// No ray passes between triangles that share an edge or a corner.
+    #[default]
+    Watertight,
+    /// A little sooner; now and then a ray passes between neighbours.
+    Fast,
+}
+
+/// One ray's way down.
+struct Descent<'a, const ANY: bool, const FAST: bool> {
+    bvh: &'a Bvh,
+    probe: &'a Probe,
+    root: Child,
+    stack: &'a mut [Waiting],
+}
+
+impl<const ANY: bool, const FAST: bool> Work for Descent<'_, ANY, FAST> {
+    type Output = Nearest;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self, lanes: L) -> Nearest {
+        let Self { bvh, probe, root, stack } = self;
+        let slabs = Slabs::new(lanes, probe);
+        let mut nearest = Nearest::before(probe.limit);
+        let mut current = root;
+        let mut waiting = 0;
+        loop {
+            let next = if current.is_leaf() {
+                bvh.visit::<FAST>(current, probe, &mut nearest);
+                if ANY && nearest.found() {
+                    return nearest;
+                }
+                None
+            } else {
+                let node = &bvh.nodes[current.0 as usize];
+                let (mask, entries) = slabs.enter(node, nearest.t);
+                order(lanes, bvh, node, (mask, &entries), stack, &mut waiting)
+            };
+            current = match next {
+                Some(child) => child,
+                None => loop {
+                    if waiting == 0 {
+                        return nearest;
+                    }
+                    waiting -= 1;
+                    let (child, entry) = stack[waiting];
+                    if entry <= nearest.t {
+                        break child;
+                    }
+                },
+            };
+        }
+    }
+}
 
 impl Geometry for Bvh {
     #[inline]
@@ -111,7 +181,19 @@ impl Bvh {
             stats: BuildStats::default(),
             bounds,
             some_hidden,
+            machine: Machine::detected(),
+            triangles: Triangles::default(),
         }
+    }
+
+    /// The same tree with triangles met in another way.
+    pub fn with_triangles(self, triangles: Triangles) -> Self {
+        Self { triangles, ..self }
+    }
+
+    /// The same tree without the registers that only some machines have. Answers are the same, bit for bit.
+    pub fn portable(self) -> Self {
+        Self { machine: Machine::Any, ..self }
     }
 
     /// What building took and made.
@@ -131,56 +213,48 @@ impl Bvh {
     #[inline(always)]
     fn cast<const ANY: bool>(&self, ray: &Ray) -> Option<Nearest> {
         let root = self.root?;
-        let probe = Probe::new(ray, &self.bounds, self.some_hidden)?;
-        const NONE: Waiting = (Child(0), 0.0);
-        // Small trees get a small stack: clearing a large one would cost as much as the ray.
-        let nearest = match self.most_waiting {
-            0..=16 => self.descend::<ANY>(&probe, root, &mut [NONE; 16]),
-            17..=32 => self.descend::<ANY>(&probe, root, &mut [NONE; 32]),
-            33..=64 => self.descend::<ANY>(&probe, root, &mut [NONE; 64]),
-            most => self.descend::<ANY>(&probe, root, &mut vec![NONE; most]),
+        let probe = &Probe::new(ray, &self.bounds, self.some_hidden)?;
+        let nearest = if self.most_waiting <= STACK {
+            WAITING.with_borrow_mut(|stack| self.descend::<ANY>(probe, root, stack))
+        } else {
+            self.descend::<ANY>(probe, root, &mut vec![NONE; self.most_waiting])
         };
-        nearest.found().then_some(nearest)
+        let mut nearest = nearest.found().then_some(nearest)?;
+        let leaf = Child(nearest.slot);
+        if !ANY && leaf.kind() == Leaf::Packet && self.triangles == Triangles::Watertight {
+            let t = self.packets[leaf.index() / PACKET].exact_distance(probe, leaf.index() % PACKET);
+            if t > 0.0 && t < probe.limit {
+                nearest.t = t;
+            }
+        }
+        Some(nearest)
     }
 
+    #[inline(always)]
     fn descend<const ANY: bool>(&self, probe: &Probe, root: Child, stack: &mut [Waiting]) -> Nearest {
-        let mut nearest = Nearest::before(probe.limit);
-        let mut current = root;
-        let mut waiting = 0;
-        loop {
-            let next = if current.is_leaf() {
-                self.visit(current, probe, &mut nearest);
-                if ANY && nearest.found() {
-                    return nearest;
-                }
-                None
-            } else {
-                let node = &self.nodes[current.0 as usize];
-                let (mask, entries) = node.hit(probe, nearest.t);
-                order(node, mask, &entries, stack, &mut waiting)
-            };
-            current = match next {
-                Some(child) => child,
-                None => loop {
-                    if waiting == 0 {
-                        return nearest;
-                    }
-                    waiting -= 1;
-                    let (child, entry) = stack[waiting];
-                    if entry <= nearest.t {
-                        break child;
-                    }
-                },
-            };
+        let machine = if probe.fusible { self.machine } else { Machine::Any };
+        match self.triangles {
+            Triangles::Watertight => machine.run(Descent::<ANY, false> { bvh: self, probe, root, stack }),
+            Triangles::Fast => machine.run(Descent::<ANY, true> { bvh: self, probe, root, stack }),
+        }
+    }
+
+    #[inline(always)]
+    fn prefetch<L: Lanes>(&self, lanes: L, child: Child) {
+        if !child.is_leaf() {
+            lanes.prefetch(&self.nodes, child.index());
+        } else if child.kind() == Leaf::Packet {
+            lanes.prefetch(&self.packets, child.index());
         }
     }
 
     /// Offers what the ray hits in a leaf.
     #[inline(always)]
-    fn visit(&self, leaf: Child, probe: &Probe, nearest: &mut Nearest) {
+    fn visit<const FAST: bool>(&self, leaf: Child, probe: &Probe, nearest: &mut Nearest) {
         if leaf.kind() == Leaf::Packet {
             let slot = Child::leaf(Leaf::Packet, leaf.index() * PACKET);
-            return self.packets[leaf.index()].intersect(probe, slot.0, nearest);
+            let packet = &self.packets[leaf.index()];
+            return if FAST { packet.intersect_fast(probe, slot.0, nearest) } else { packet.intersect(probe, slot.0, nearest) };
         }
         let (origin, direction) = probe.in_f64();
         let (t, key) = match leaf.kind() {
@@ -206,18 +280,30 @@ impl Bvh {
 
 /// The nearest of the children that the ray enters; the others wait, the nearer on top.
 #[inline(always)]
-fn order(node: &Node, mut mask: u32, entries: &[f32], stack: &mut [Waiting], waiting: &mut usize) -> Option<Child> {
+fn order<L: Lanes>(
+    lanes: L,
+    bvh: &Bvh,
+    node: &Node,
+    (mut mask, entries): (u32, &[f32; WIDTH]),
+    stack: &mut [Waiting],
+    waiting: &mut usize,
+) -> Option<Child> {
     if mask == 0 {
         return None;
     }
     let lane = mask.trailing_zeros() as usize;
     mask &= mask - 1;
     let mut first = (node.children[lane], entries[lane]);
+    if mask == 0 {
+        return Some(first.0);
+    }
+    bvh.prefetch(lanes, first.0);
     let floor = *waiting;
     while mask != 0 {
         let lane = mask.trailing_zeros() as usize;
         mask &= mask - 1;
         let mut one = (node.children[lane], entries[lane]);
+        bvh.prefetch(lanes, one.0);
         if one.1 < first.1 {
             std::mem::swap(&mut one, &mut first);
         }

@@ -14,6 +14,7 @@ mod bvh;
 mod collapse;
 mod cylinder;
 mod disk;
+mod lanes;
 mod nearest;
 mod node;
 mod parallelogram;
@@ -28,7 +29,7 @@ mod tests;
 
 pub use bounds::Bounds;
 pub use build::BuildStats;
-pub use bvh::Bvh;
+pub use bvh::{Bvh, Triangles};
 pub use cylinder::Cylinder;
 pub use disk::Disk;
 pub use parallelogram::Parallelogram;

@@ -1,13 +1,8 @@
 //! The nodes of the tree: a few boxes tested at once.
 
-use wide::f32x4;
+use super::{bounds::Bounds, lanes::Lanes, probe::Probe};
 
-use super::{bounds::Bounds, probe::Probe};
-
-/// How many vectors of four boxes a node holds.
-const QUADS: usize = 2;
-/// How many children a node has at most.
-pub(super) const WIDTH: usize = 4 * QUADS;
+pub(super) use super::lanes::WIDTH;
 
 /// What a child is: an inner node, or a leaf of one kind; the kind is in the top three bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -60,48 +55,60 @@ impl Child {
 
 /// Up to [`WIDTH`] boxes and what is in them.
 #[derive(Clone, Debug)]
+#[repr(align(32))]
 pub(super) struct Node {
-    /// Minima and maxima: x, y, z; then x, y, z. Empty boxes are turned inside out, so that no ray enters them.
-    rows: [[f32x4; QUADS]; 6],
+    /// Per axis minima and maxima. Empty boxes are turned inside out, so that no ray enters them.
+    rows: [[[f32; WIDTH]; 2]; 3],
     pub children: [Child; WIDTH],
 }
 
 impl Node {
     pub fn new(children: &[(Bounds, Child)]) -> Self {
-        let mut rows = [[0.0_f32; WIDTH]; 6];
-        let mut refs = [Child(0); WIDTH];
+        let mut node = Self { rows: [[[0.0; WIDTH]; 2]; 3], children: [Child(0); WIDTH] };
         for lane in 0..WIDTH {
             let (bounds, child) = children.get(lane).copied().unwrap_or((Bounds::EMPTY, Child(0)));
-            refs[lane] = child;
+            node.children[lane] = child;
             for axis in 0..3 {
-                rows[axis][lane] = bounds.min[axis];
-                rows[axis + 3][lane] = bounds.max[axis];
+                node.rows[axis][0][lane] = bounds.min[axis];
+                node.rows[axis][1][lane] = bounds.max[axis];
             }
         }
-        let rows = rows.map(|row| std::array::from_fn(|quad| f32x4::new(std::array::from_fn(|lane| row[4 * quad + lane]))));
-        Self { rows, children: refs }
+        node
+    }
+}
+
+/// What of a ray meets boxes.
+#[derive(Clone, Copy)]
+pub(super) struct Slabs<L: Lanes> {
+    lanes: L,
+    backwards: [bool; 3],
+    near_start: [L::Eight; 3],
+    far_start: [L::Eight; 3],
+    inverse: [L::Eight; 3],
+}
+
+impl<L: Lanes> Slabs<L> {
+    #[inline(always)]
+    pub fn new(lanes: L, probe: &Probe) -> Self {
+        Self {
+            lanes,
+            backwards: probe.backwards,
+            near_start: std::array::from_fn(|axis| lanes.start(probe.near_origin[axis], probe.inverse[axis])),
+            far_start: std::array::from_fn(|axis| lanes.start(probe.far_origin[axis], probe.inverse[axis])),
+            inverse: probe.inverse.map(|inverse| lanes.splat(inverse)),
+        }
     }
 
     /// Which boxes the ray is in before `t`, as bits, and where it enters them.
     /// The slab test of Kay and Kajiya 1986; its rounding (Ize 2013) is in the probe's slack.
     #[inline(always)]
-    pub fn hit(&self, probe: &Probe, t: f32) -> (u32, [f32; WIDTH]) {
-        let mut mask = 0;
-        let mut entries = [0.0; WIDTH];
-        let [nx, ny, nz] = probe.near_row.map(|row| &self.rows[row]);
-        let [fx, fy, fz] = probe.far_row.map(|row| &self.rows[row]);
-        for quad in 0..QUADS {
-            let near_x = (nx[quad] - probe.near_origin[0]) * probe.inverse[0];
-            let near_y = (ny[quad] - probe.near_origin[1]) * probe.inverse[1];
-            let near_z = (nz[quad] - probe.near_origin[2]) * probe.inverse[2];
-            let far_x = (fx[quad] - probe.far_origin[0]) * probe.inverse[0];
-            let far_y = (fy[quad] - probe.far_origin[1]) * probe.inverse[1];
-            let far_z = (fz[quad] - probe.far_origin[2]) * probe.inverse[2];
-            let near = near_x.fast_max(near_y).fast_max(near_z.fast_max(f32x4::ZERO));
-            let far = far_x.fast_min(far_y).fast_min(far_z.fast_min(f32x4::splat(t)));
-            mask |= near.simd_le(far).to_bitmask() << (4 * quad);
-            entries[4 * quad..4 * quad + 4].copy_from_slice(&near.to_array());
-        }
-        (mask, entries)
+    pub fn enter(&self, node: &Node, t: f32) -> (u32, [f32; WIDTH]) {
+        let lanes = self.lanes;
+        let plane = |axis: usize, upper: bool| lanes.load(&node.rows[axis][usize::from(upper)]);
+        let near = |axis: usize| lanes.along(plane(axis, self.backwards[axis]), self.near_start[axis], self.inverse[axis]);
+        let far = |axis: usize| lanes.along(plane(axis, !self.backwards[axis]), self.far_start[axis], self.inverse[axis]);
+        let entry = lanes.max(lanes.max(near(0), near(1)), lanes.max(near(2), lanes.splat(0.0)));
+        let exit = lanes.min(lanes.min(far(0), far(1)), lanes.min(far(2), lanes.splat(t)));
+        (lanes.at_most(entry, exit), lanes.store(entry))
     }
 }

@@ -25,13 +25,14 @@ pub(super) struct Probe {
     /// Whether primitives that are hidden from the lens are passed.
     pub hide: bool,
 
-    /// Which of a node's six rows (three minima, three maxima) the ray enters and leaves by, per axis.
-    pub near_row: [usize; 3],
-    pub far_row: [usize; 3],
+    /// Whether box tests may multiply first and subtract then.
+    pub fusible: bool,
+    /// Per axis, whether the ray enters boxes at their maxima.
+    pub backwards: [bool; 3],
     /// The origin, moved by the slack so that every box grows by it.
-    pub near_origin: [f32x4; 3],
-    pub far_origin: [f32x4; 3],
-    pub inverse: [f32x4; 3],
+    pub near_origin: [f32; 3],
+    pub far_origin: [f32; 3],
+    pub inverse: [f32; 3],
 
     /// The axes permuted so that the direction's largest component comes last.
     pub axes: [usize; 3],
@@ -74,28 +75,25 @@ impl Probe {
             direction: ray.direction,
             limit,
             hide: some_hidden && ray.segment == Segment::Lens,
-            near_row: [0, 1, 2],
-            far_row: [3, 4, 5],
-            near_origin: [f32x4::ZERO; 3],
-            far_origin: [f32x4::ZERO; 3],
-            inverse: inverse.map(f32x4::splat),
+            fusible: true,
+            backwards: d.map(f32::is_sign_negative),
+            near_origin: [0.0; 3],
+            far_origin: [0.0; 3],
+            inverse,
             axes,
             apex: axes.map(|axis| f32x4::splat(o[axis])),
             shear: [d[axes[0]] * inverse[last], d[axes[1]] * inverse[last], inverse[last]].map(f32x4::splat),
             depth: f32x4::splat(largest),
         };
-        for axis in 0..3 {
+        for (axis, origin) in o.into_iter().enumerate() {
             // Always more than half a step of the origin, or adding it would do nothing.
-            let wide = slack + 2.0 * U * o[axis].abs();
-            let out = if d[axis].is_sign_negative() {
-                probe.near_row[axis] = axis + 3;
-                probe.far_row[axis] = axis;
-                -wide
-            } else {
-                wide
-            };
-            probe.near_origin[axis] = f32x4::splat(o[axis] + out);
-            probe.far_origin[axis] = f32x4::splat(o[axis] - out);
+            let wide = slack + 4.0 * U * origin.abs();
+            let out = if probe.backwards[axis] { -wide } else { wide };
+            probe.near_origin[axis] = origin + out;
+            probe.far_origin[axis] = origin - out;
+            // Where origin · inverse has no finite value, boxes are tested by (plane − origin) · inverse.
+            let farthest = (origin.abs() + wide) * probe.inverse[axis].abs();
+            probe.fusible &= farthest < f32::MAX;
         }
         Some(probe)
     }

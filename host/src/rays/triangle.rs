@@ -96,9 +96,41 @@ impl Packet {
             let lane = candidates.trailing_zeros() as usize & 3;
             candidates &= candidates - 1;
             let key = self.keys[lane];
-            let t = if unsure >> lane & 1 != 0 { self.exact_distance(probe, lane) } else { t[lane] };
+            let t = if unsure >> lane & 1 != 0 { self.unsure_distance(probe, lane) } else { t[lane] };
             if nearest.loses_to(t, key) && !(probe.hide && key.hidden_from_lens()) {
                 *nearest = Nearest { t, key, slot: slot + lane as u32, coordinates: (v[lane], w[lane]) };
+            }
+        }
+    }
+
+    /// Offers what the ray hits here, by the test of Möller and Trumbore 1997: sooner than [`Packet::intersect`], but rays may pass
+    /// between neighbours, and rounding decides what lies at the ray's ends.
+    #[inline(always)]
+    pub fn intersect_fast(&self, probe: &Probe, slot: u32, nearest: &mut Nearest) {
+        let splat = |v: Vec3| v.to_array().map(f32x4::splat);
+        let (origin, d) = (splat(probe.origin), splat(probe.direction));
+        let sub = |p: &[f32x4; 3], q: &[f32x4; 3]| [p[0] - q[0], p[1] - q[1], p[2] - q[2]];
+        let dot = |p: &[f32x4; 3], q: &[f32x4; 3]| p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
+        let cross = |p: &[f32x4; 3], q: &[f32x4; 3]| [p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]];
+        let [a, b, c] = &self.corners;
+        let (x, y, to_origin) = (sub(b, a), sub(c, a), sub(&origin, a));
+        let (across, along) = (cross(&d, &y), cross(&to_origin, &x));
+        let per_area = f32x4::ONE / dot(&x, &across);
+        let (v, w) = (dot(&to_origin, &across) * per_area, dot(&d, &along) * per_area);
+        let t = dot(&y, &along) * per_area;
+        let inside = v.fast_min(w).fast_min(f32x4::ONE - v - w).simd_ge(f32x4::ZERO);
+        let candidates = inside & t.simd_gt(f32x4::ZERO) & t.simd_le(f32x4::splat(nearest.t));
+        let mut candidates = candidates.to_bitmask();
+        if candidates == 0 {
+            return;
+        }
+        let (t, v, w) = (t.to_array(), v.to_array(), w.to_array());
+        while candidates != 0 {
+            let lane = candidates.trailing_zeros() as usize & 3;
+            candidates &= candidates - 1;
+            let key = self.keys[lane];
+            if nearest.loses_to(t[lane], key) && !(probe.hide && key.hidden_from_lens()) {
+                *nearest = Nearest { t: t[lane], key, slot: slot + lane as u32, coordinates: (v[lane], w[lane]) };
             }
         }
     }
@@ -106,7 +138,13 @@ impl Packet {
     /// The distance to the plane of a triangle whose f32 distance could be on the wrong side of the ray's start or end.
     #[cold]
     #[inline(never)]
-    fn exact_distance(&self, probe: &Probe, lane: usize) -> f32 {
+    fn unsure_distance(&self, probe: &Probe, lane: usize) -> f32 {
+        self.exact_distance(probe, lane)
+    }
+
+    /// The distance to the plane of a triangle, within two roundings however much it is grazed.
+    #[inline(always)]
+    pub fn exact_distance(&self, probe: &Probe, lane: usize) -> f32 {
         let [a, b, c] = self.triangle(lane).map(|corner| corner.as_dvec3());
         let (origin, direction) = probe.in_f64();
         let normal: DVec3 = (b - a).cross(c - a);

@@ -5,7 +5,7 @@ use bidir_kernel::Vec3;
 use super::random::{Random, ray, segment, sphere_mesh, tree};
 use crate::rays::{Bvh, Cylinder, Disk, Geometry, Parallelogram, Primitives, Sphere, Visibility};
 
-const BOUNCES: usize = 100_000;
+const BOUNCES: usize = 1_000_000;
 const PLACES: [(f32, Vec3); 6] = [
     (1e-3, Vec3::ZERO),
     (1.0, Vec3::ZERO),

@@ -5,7 +5,7 @@ use bidir_kernel::Vec3;
 use super::random::{Random, ray, sphere_mesh, tree};
 use crate::rays::{Bvh, Geometry, Parallelogram, Primitives, Visibility};
 
-const RAYS: usize = 100_000;
+const RAYS: usize = 1_000_000;
 
 fn leaks(bvh: &Bvh, corners: &[Vec3], faces: &[[usize; 3]], centre: Vec3, radius: f32, seed: u64) -> usize {
     let mut random = Random(seed);
