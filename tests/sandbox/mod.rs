@@ -4,6 +4,7 @@ mod batches;
 mod bits;
 mod delta;
 mod lights;
+mod natively;
 mod twins;
 
 use std::{
