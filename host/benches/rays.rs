@@ -2,10 +2,11 @@
 //!
 //! Coherent rays come from a pinhole in scan order; random rays join random points of random surfaces, as connections do.
 
-use std::{f32::consts::TAU, hint::black_box, time::Instant};
+use std::{f32::consts::TAU, hint::black_box, sync::Arc, time::Instant};
 
-use bidir::rays::{Bvh, Cylinder, Geometry, Parallelogram, Primitives, Sphere, Visibility::Everywhere};
+use bidir::rays::{Bvh, Cylinder, Geometry, Instance, Parallelogram, Primitives, Sphere, Visibility::Everywhere};
 use bidir_kernel::{Ray, Segment, Vec3};
+use glam::{DAffine3, DMat3, DVec3};
 
 const RAYS: usize = 1 << 18;
 const ROUNDS: usize = 15;
@@ -14,12 +15,13 @@ fn main() {
     let filter = std::env::args().skip(1).find(|word| !word.starts_with('-')).unwrap_or_default();
     println!("{:<22}{:>9}{:>9}{:>9}{:>9}   build", "ns per ray", "coherent", "bounces", "segments", "any hit");
     type Scene = (&'static str, fn() -> Primitives);
-    let scenes: [Scene; 5] = [
+    let scenes: [Scene; 6] = [
         ("box, 6 + 10 + 12", cornell),
         ("box and analytics", analytic),
         ("blob, 5k", || blob(50)),
         ("blob, 50k", || blob(158)),
         ("blob, 1M", || blob(707)),
+        ("a million blobs of 10k", million),
     ];
     for (name, make) in scenes.into_iter().filter(|(name, _)| name.contains(&filter)) {
         let bvh = Bvh::build(make());
@@ -34,8 +36,16 @@ fn main() {
         times.iter().for_each(|time| print!("{time:>9.1}"));
         let stats = bvh.stats();
         let per_primitive = stats.bytes as f64 / stats.primitives as f64;
-        println!("   {:.3} s, {} nodes, {} packets, {per_primitive:.0} bytes each", stats.seconds, stats.nodes, stats.packets);
+        print!("   {:.3} s, {} nodes, {} packets, {per_primitive:.0} bytes each", stats.seconds, stats.nodes, stats.packets);
+        println!("{}", peak().map_or_else(String::new, |peak| format!("; {peak} MB at most so far")));
     }
+}
+
+/// The most memory that this process has had, MB; `None` where the system does not say.
+fn peak() -> Option<u64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
+    line.split_whitespace().next()?.parse().ok().map(|kilobytes: u64| kilobytes / 1024)
 }
 
 /// The least over some rounds: what the machine does besides can only add.
@@ -100,6 +110,22 @@ fn rays(bvh: &Bvh) -> (Vec<Ray>, Vec<Ray>, Vec<Ray>) {
         })
         .collect();
     (coherent, bounces, segments)
+}
+
+/// A hundred a side of the same blob, each turned another way.
+fn million() -> Primitives {
+    const SIDE: usize = 100;
+    let blob = Arc::new(Bvh::build(blob(71)));
+    let mut random = Random(2);
+    let mut all = Primitives::new();
+    for i in 0..SIDE * SIDE * SIDE {
+        let cell = DVec3::new((i % SIDE) as f64, (i / SIDE % SIDE) as f64, (i / SIDE / SIDE) as f64);
+        let turn = DMat3::from_axis_angle(random.direction().as_dvec3().normalize(), f64::from(TAU * random.unit()));
+        let matrix3 = turn * (0.4 / SIDE as f64);
+        let to_world = DAffine3 { matrix3, translation: (cell + 0.5) * (2.0 / SIDE as f64) - 1.0 };
+        all.instance(Instance::new(Arc::clone(&blob), to_world).expect("an inverse"), Everywhere);
+    }
+    all
 }
 
 /// Six walls (one open), a lamp, two blocks of triangles: a box as everybody has it.

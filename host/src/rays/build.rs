@@ -53,6 +53,10 @@ impl Bvh {
             let plan = Collapse::new(&binary, |primitive| primitive < triangles);
             Wide { binary: &binary, plan: &plan, primitives: &primitives, bvh: &mut bvh }.emit();
         }
+        // A ray in an instance has what waits outside and what waits inside.
+        let inside = |of: fn(&Bvh) -> usize| bvh.instances.iter().map(|one| of(one.shape.geometry())).max().unwrap_or(0);
+        let (waiting, levels) = (inside(|inner| inner.most_waiting), inside(|inner| inner.levels + 1));
+        (bvh.most_waiting, bvh.levels) = (bvh.most_waiting + waiting, levels);
         bvh.stats = BuildStats {
             primitives: count,
             nodes: bvh.nodes.len(),
@@ -65,13 +69,14 @@ impl Bvh {
 }
 
 impl Primitives {
-    /// In the order of the tree's items: triangles, spheres, disks, cylinders.
+    /// In the order of the tree's items: triangles, spheres, disks, cylinders, instances.
     fn all_bounds(&self) -> impl Iterator<Item = Bounds> {
         let triangles = self.triangles.shapes.iter().map(|corners| Bounds::of(corners));
         let spheres = self.spheres.shapes.iter().map(|sphere| sphere.bounds());
         let disks = self.disks.shapes.iter().map(|disk| disk.bounds());
         let cylinders = self.cylinders.shapes.iter().map(|cylinder| cylinder.bounds());
-        triangles.chain(spheres).chain(disks).chain(cylinders)
+        let instances = self.instances.shapes.iter().map(|instance| instance.bounds());
+        triangles.chain(spheres).chain(disks).chain(cylinders).chain(instances)
     }
 }
 
@@ -135,7 +140,7 @@ impl Wide<'_> {
         let mut item = items[0];
         if item < all.triangles.len() {
             let triangles: Vec<_> = items.iter().map(|&item| (all.triangles.shapes[item], all.triangles.keys[item])).collect();
-            assert!(self.bvh.packets.len() < Child::MOST, "a tree holds at most 2^27 packets of triangles");
+            assert!(self.bvh.packets.len() < Child::MOST, "a tree holds at most 2^26 packets of triangles");
             self.bvh.packets.push(Packet::new(&triangles));
             return Child::leaf(Leaf::Packet, self.bvh.packets.len() - 1);
         }
@@ -150,7 +155,12 @@ impl Wide<'_> {
             return Child::leaf(Leaf::Disk, self.bvh.disks.len() - 1);
         }
         item -= all.disks.len();
-        self.bvh.cylinders.push(Owned { shape: RoundCylinder::new(&all.cylinders.shapes[item]), key: all.cylinders.keys[item] });
-        Child::leaf(Leaf::Cylinder, self.bvh.cylinders.len() - 1)
+        if item < all.cylinders.len() {
+            self.bvh.cylinders.push(Owned { shape: RoundCylinder::new(&all.cylinders.shapes[item]), key: all.cylinders.keys[item] });
+            return Child::leaf(Leaf::Cylinder, self.bvh.cylinders.len() - 1);
+        }
+        item -= all.cylinders.len();
+        self.bvh.instances.push(Owned { shape: all.instances.shapes[item].clone(), key: all.instances.keys[item] });
+        Child::leaf(Leaf::Instance, self.bvh.instances.len() - 1)
     }
 }

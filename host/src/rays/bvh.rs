@@ -11,13 +11,14 @@ use super::{
     build::BuildStats,
     cylinder::RoundCylinder,
     disk::FlatDisk,
+    instance::{Instance, LEVELS},
     lanes::{Lanes, Machine, Work},
     nearest::{Key, Nearest},
     node::{Child, Leaf, Node, Slabs, WIDTH},
     primitives::PrimitiveId,
     probe::Probe,
     sphere::Sphere,
-    surface::SurfacePoint,
+    surface::{SurfacePoint, rounding},
     triangle::{PACKET, Packet},
 };
 
@@ -29,12 +30,15 @@ pub struct Bvh {
     pub(super) spheres: Vec<Owned<Sphere>>,
     pub(super) disks: Vec<Owned<FlatDisk>>,
     pub(super) cylinders: Vec<Owned<RoundCylinder>>,
+    pub(super) instances: Vec<Owned<Instance>>,
     pub(super) root: Option<Child>,
-    /// How many nodes a ray can have waiting.
+    /// How many nodes a ray can have waiting, in instances as well.
     pub(super) most_waiting: usize,
+    /// How many instances lie within each other.
+    pub(super) levels: usize,
     pub(super) stats: BuildStats,
     bounds: Bounds,
-    some_hidden: bool,
+    pub(super) some_hidden: bool,
     machine: Machine,
     triangles: Triangles,
 }
@@ -69,12 +73,17 @@ pub enum Triangles {
     Fast,
 }
 
+/// Where the trees within an instance keep what was hit there.
+type Trail = [u32; LEVELS];
+
 /// One ray's way down.
 struct Descent<'a, const ANY: bool, const FAST: bool> {
     bvh: &'a Bvh,
     probe: &'a Probe,
     root: Child,
+    nearest: Nearest,
     stack: &'a mut [Waiting],
+    trail: &'a mut Trail,
 }
 
 impl<const ANY: bool, const FAST: bool> Work for Descent<'_, ANY, FAST> {
@@ -82,14 +91,17 @@ impl<const ANY: bool, const FAST: bool> Work for Descent<'_, ANY, FAST> {
 
     #[inline(always)]
     fn run<L: Lanes>(self, lanes: L) -> Nearest {
-        let Self { bvh, probe, root, stack } = self;
+        let Self { bvh, probe, root, mut nearest, stack, trail } = self;
         let slabs = Slabs::new(lanes, probe);
-        let mut nearest = Nearest::before(probe.limit);
         let mut current = root;
         let mut waiting = 0;
         loop {
             let next = if current.is_leaf() {
-                bvh.visit::<FAST>(current, probe, &mut nearest);
+                match current.kind() {
+                    Leaf::Packet => bvh.meet_packet::<FAST>(current, probe, &mut nearest),
+                    Leaf::Instance => bvh.meet_instance::<ANY, FAST>(current, probe, &mut nearest, &mut stack[waiting..], trail),
+                    _ => bvh.meet_shape(current, probe, &mut nearest),
+                }
                 if ANY && nearest.found() {
                     return nearest;
                 }
@@ -119,12 +131,8 @@ impl<const ANY: bool, const FAST: bool> Work for Descent<'_, ANY, FAST> {
 impl Geometry for Bvh {
     #[inline]
     fn closest(&self, ray: &Ray) -> Option<RayHit> {
-        let nearest = self.cast::<false>(ray)?;
-        let mut coordinates = nearest.coordinates;
-        if nearest.key.is_second_half() {
-            coordinates = (1.0 - coordinates.0, 1.0 - coordinates.1);
-        }
-        Some(RayHit { t: nearest.t, primitive: PrimitiveId(nearest.key.primitive()), coordinates, slot: nearest.slot })
+        let (Nearest { t, key, slot, coordinates }, trail) = self.cast::<false>(ray)?;
+        Some(RayHit { t, primitive: PrimitiveId(key.primitive()), coordinates, slot, trail })
     }
 
     #[inline]
@@ -132,40 +140,43 @@ impl Geometry for Bvh {
         self.cast::<true>(ray).is_some()
     }
 
+    fn path(&self, hit: &RayHit) -> impl Iterator<Item = PrimitiveId> {
+        let mut next = Some((self, Child(hit.slot)));
+        let mut inner = hit.trail.into_iter();
+        std::iter::from_fn(move || {
+            let (bvh, leaf) = next.take()?;
+            if leaf.kind() == Leaf::Instance {
+                next = inner.next().map(|slot| (bvh.instances[leaf.index()].shape.geometry(), Child(slot)));
+            }
+            Some(PrimitiveId(bvh.key(leaf).primitive()))
+        })
+    }
+
     fn surface(&self, ray: &Ray, hit: &RayHit) -> SurfacePoint {
-        let leaf = Child(hit.slot);
-        let on_ray = || ray.origin.as_dvec3() + ray.direction.as_dvec3() * f64::from(hit.t);
-        match leaf.kind() {
-            Leaf::Packet => {
-                let (packet, lane) = (&self.packets[leaf.index() / PACKET], leaf.index() % PACKET);
-                let [a, b, c] = packet.triangle(lane).map(|corner| corner.as_dvec3());
-                let (x, y) = (b - a, c - a);
-                let (one, two) = (f64::from(hit.coordinates.0), f64::from(hit.coordinates.1));
-                let (b1, b2) = if packet.keys[lane].is_second_half() { (1.0 - one, 1.0 - two) } else { (one, two) };
-                let normal = x.cross(y).normalize_or(DVec3::Z);
-                SurfacePoint::new(a + x * b1 + y * b2, normal, DVec3::new(one, two, 0.0), &self.bounds)
-            }
-            Leaf::Sphere => {
-                let sphere = &self.spheres[leaf.index()].shape;
-                let normal = sphere.normal(on_ray());
-                SurfacePoint::new(sphere.point(normal), normal, normal, &self.bounds)
-            }
-            Leaf::Disk => {
-                let disk = &self.disks[leaf.index()].shape;
-                let (a, b) = disk.coordinates(on_ray());
-                SurfacePoint::new(disk.centre + disk.x * a + disk.y * b, disk.normal, DVec3::new(a, b, 0.0), &self.bounds)
-            }
-            Leaf::Cylinder => {
-                let cylinder = &self.cylinders[leaf.index()].shape;
-                let (normal, local) = cylinder.normal(on_ray());
-                SurfacePoint::new(cylinder.point(normal, local.z), normal, local, &self.bounds)
-            }
-        }
+        let on_ray = OnRay { origin: ray.origin.as_dvec3(), direction: ray.direction.as_dvec3(), t: f64::from(hit.t) };
+        let (one, two) = (f64::from(hit.coordinates.0), f64::from(hit.coordinates.1));
+        let Found { position, normal, local, error } = self.found(on_ray, Child(hit.slot), (one, two), &hit.trail);
+        SurfacePoint::new(position, normal, local, error)
     }
 
     fn bounds(&self) -> Bounds {
         self.bounds
     }
+}
+
+/// A point of a ray.
+struct OnRay {
+    origin: DVec3,
+    direction: DVec3,
+    t: f64,
+}
+
+/// A point of a primitive: exact compared to f32, with how far rounding may move it along each axis.
+struct Found {
+    position: DVec3,
+    normal: DVec3,
+    local: DVec3,
+    error: DVec3,
 }
 
 impl Bvh {
@@ -176,8 +187,10 @@ impl Bvh {
             spheres: vec![],
             disks: vec![],
             cylinders: vec![],
+            instances: vec![],
             root: None,
             most_waiting: 0,
+            levels: 0,
             stats: BuildStats::default(),
             bounds,
             some_hidden,
@@ -207,36 +220,125 @@ impl Bvh {
             + size_of_val(&*self.spheres)
             + size_of_val(&*self.disks)
             + size_of_val(&*self.cylinders)
+            + size_of_val(&*self.instances)
+    }
+
+    /// The box of everything, and what lies beyond nothing.
+    #[inline(always)]
+    pub(super) fn extent(&self) -> &Bounds {
+        &self.bounds
+    }
+
+    fn key(&self, leaf: Child) -> Key {
+        match leaf.kind() {
+            Leaf::Packet => self.packets[leaf.index() / PACKET].keys[leaf.index() % PACKET],
+            Leaf::Sphere => self.spheres[leaf.index()].key,
+            Leaf::Disk => self.disks[leaf.index()].key,
+            Leaf::Cylinder => self.cylinders[leaf.index()].key,
+            Leaf::Instance => self.instances[leaf.index()].key,
+        }
+    }
+
+    fn found(&self, at: OnRay, leaf: Child, (one, two): (f64, f64), trail: &[u32]) -> Found {
+        let on_ray = || at.origin + at.direction * at.t;
+        let here = |position: DVec3, normal, local| Found { position, normal, local, error: rounding(position, &self.bounds) };
+        match leaf.kind() {
+            Leaf::Packet => {
+                let (packet, lane) = (&self.packets[leaf.index() / PACKET], leaf.index() % PACKET);
+                let [a, b, c] = packet.triangle(lane).map(|corner| corner.as_dvec3());
+                let (x, y) = (b - a, c - a);
+                let (b1, b2) = if packet.keys[lane].is_second_half() { (1.0 - one, 1.0 - two) } else { (one, two) };
+                here(a + x * b1 + y * b2, x.cross(y).normalize_or(DVec3::Z), DVec3::new(one, two, 0.0))
+            }
+            Leaf::Sphere => {
+                let sphere = &self.spheres[leaf.index()].shape;
+                let normal = sphere.normal(on_ray());
+                here(sphere.point(normal), normal, normal)
+            }
+            Leaf::Disk => {
+                let disk = &self.disks[leaf.index()].shape;
+                let (a, b) = disk.coordinates(on_ray());
+                here(disk.centre + disk.x * a + disk.y * b, disk.normal, DVec3::new(a, b, 0.0))
+            }
+            Leaf::Cylinder => {
+                let cylinder = &self.cylinders[leaf.index()].shape;
+                let (normal, local) = cylinder.normal(on_ray());
+                here(cylinder.point(normal, local.z), normal, local)
+            }
+            Leaf::Instance => {
+                let instance = &self.instances[leaf.index()].shape;
+                let (origin, direction) = instance.to_local(at.origin, at.direction);
+                let (slot, trail) = trail.split_first().unwrap_or((&0, &[]));
+                let inner = instance.geometry().found(OnRay { origin, direction, t: at.t }, Child(*slot), (one, two), trail);
+                let (position, normal, error) = instance.to_world(inner.position, inner.normal, inner.error);
+                Found { position, normal, local: inner.local, error: error + rounding(position, &self.bounds) }
+            }
+        }
     }
 
     /// The nearest hit, or with `ANY` whichever is found first.
     #[inline(always)]
-    fn cast<const ANY: bool>(&self, ray: &Ray) -> Option<Nearest> {
-        let root = self.root?;
+    fn cast<const ANY: bool>(&self, ray: &Ray) -> Option<(Nearest, Trail)> {
         let probe = &Probe::new(ray, &self.bounds, self.some_hidden)?;
+        let mut trail = [0; LEVELS];
+        let nearest = Nearest::before(probe.limit);
         let nearest = if self.most_waiting <= STACK {
-            WAITING.with_borrow_mut(|stack| self.descend::<ANY>(probe, root, stack))
+            WAITING.with_borrow_mut(|stack| self.descend::<ANY>(probe, nearest, stack, &mut trail))
         } else {
-            self.descend::<ANY>(probe, root, &mut vec![NONE; self.most_waiting])
+            self.descend::<ANY>(probe, nearest, &mut vec![NONE; self.most_waiting], &mut trail)
         };
-        let mut nearest = nearest.found().then_some(nearest)?;
-        let leaf = Child(nearest.slot);
-        if !ANY && leaf.kind() == Leaf::Packet && self.triangles == Triangles::Watertight {
-            let t = self.packets[leaf.index() / PACKET].exact_distance(probe, leaf.index() % PACKET);
-            if t > 0.0 && t < probe.limit {
-                nearest.t = t;
-            }
+        let mut nearest = nearest?;
+        if !ANY && self.triangles == Triangles::Watertight {
+            nearest.t =
+                self.exact_distance(probe, Child(nearest.slot), &trail).filter(|t| *t > 0.0 && *t < probe.limit).unwrap_or(nearest.t);
         }
-        Some(nearest)
+        Some((nearest, trail))
+    }
+
+    /// How far it is to a triangle that was hit; `None` for other shapes, whose distances are exact.
+    #[inline]
+    fn exact_distance(&self, probe: &Probe, leaf: Child, trail: &[u32]) -> Option<f32> {
+        match leaf.kind() {
+            Leaf::Packet => Some(self.packets[leaf.index() / PACKET].exact_distance(probe, leaf.index() % PACKET)),
+            Leaf::Instance => self.exact_distance_within(probe, leaf, trail),
+            _ => None,
+        }
+    }
+
+    #[cold]
+    fn exact_distance_within(&self, probe: &Probe, leaf: Child, trail: &[u32]) -> Option<f32> {
+        let (slot, trail) = trail.split_first()?;
+        let instance = &self.instances[leaf.index()].shape;
+        instance.geometry().exact_distance(&instance.localized(probe)?, Child(*slot), trail)
     }
 
     #[inline(always)]
-    fn descend<const ANY: bool>(&self, probe: &Probe, root: Child, stack: &mut [Waiting]) -> Nearest {
-        let machine = if probe.fusible { self.machine } else { Machine::Any };
+    fn descend<const ANY: bool>(&self, probe: &Probe, nearest: Nearest, stack: &mut [Waiting], trail: &mut Trail) -> Option<Nearest> {
         match self.triangles {
-            Triangles::Watertight => machine.run(Descent::<ANY, false> { bvh: self, probe, root, stack }),
-            Triangles::Fast => machine.run(Descent::<ANY, true> { bvh: self, probe, root, stack }),
+            Triangles::Watertight => self.search::<ANY, false>(self.machine, probe, nearest, stack, trail),
+            Triangles::Fast => self.search::<ANY, true>(self.machine, probe, nearest, stack, trail),
         }
+    }
+
+    /// Something nearer than `nearest`.
+    #[inline(always)]
+    fn search<const ANY: bool, const FAST: bool>(
+        &self,
+        machine: Machine,
+        probe: &Probe,
+        nearest: Nearest,
+        stack: &mut [Waiting],
+        trail: &mut Trail,
+    ) -> Option<Nearest> {
+        let machine = if probe.fusible { machine } else { Machine::Any };
+        let mut nearest = machine.run(Descent::<ANY, FAST> { bvh: self, probe, root: self.root?, nearest, stack, trail });
+        if !nearest.found() {
+            return None;
+        }
+        if nearest.key.is_second_half() {
+            nearest.coordinates = (1.0 - nearest.coordinates.0, 1.0 - nearest.coordinates.1);
+        }
+        Some(nearest)
     }
 
     #[inline(always)]
@@ -248,14 +350,17 @@ impl Bvh {
         }
     }
 
-    /// Offers what the ray hits in a leaf.
+    /// Offers what the ray hits of a packet.
     #[inline(always)]
-    fn visit<const FAST: bool>(&self, leaf: Child, probe: &Probe, nearest: &mut Nearest) {
-        if leaf.kind() == Leaf::Packet {
-            let slot = Child::leaf(Leaf::Packet, leaf.index() * PACKET);
-            let packet = &self.packets[leaf.index()];
-            return if FAST { packet.intersect_fast(probe, slot.0, nearest) } else { packet.intersect(probe, slot.0, nearest) };
-        }
+    fn meet_packet<const FAST: bool>(&self, leaf: Child, probe: &Probe, nearest: &mut Nearest) {
+        let slot = Child::leaf(Leaf::Packet, leaf.index() * PACKET);
+        let packet = &self.packets[leaf.index()];
+        if FAST { packet.intersect_fast(probe, slot.0, nearest) } else { packet.intersect(probe, slot.0, nearest) }
+    }
+
+    /// Offers what the ray hits of any other shape.
+    #[inline(always)]
+    fn meet_shape(&self, leaf: Child, probe: &Probe, nearest: &mut Nearest) {
         let (origin, direction) = probe.in_f64();
         let (t, key) = match leaf.kind() {
             Leaf::Sphere => {
@@ -266,7 +371,7 @@ impl Bvh {
                 let disk = &self.disks[leaf.index()];
                 (disk.shape.distance(origin, direction), disk.key)
             }
-            Leaf::Cylinder | Leaf::Packet => {
+            _ => {
                 let cylinder = &self.cylinders[leaf.index()];
                 (cylinder.shape.distance(origin, direction), cylinder.key)
             }
@@ -274,6 +379,35 @@ impl Bvh {
         let t = t as f32;
         if nearest.loses_to(t, key) && !(probe.hide && key.hidden_from_lens()) {
             *nearest = Nearest { t, key, slot: leaf.0, coordinates: (0.0, 0.0) };
+        }
+    }
+
+    /// Offers what the ray hits in an instance.
+    #[inline(never)]
+    fn meet_instance<const ANY: bool, const FAST: bool>(
+        &self,
+        leaf: Child,
+        probe: &Probe,
+        nearest: &mut Nearest,
+        stack: &mut [Waiting],
+        trail: &mut Trail,
+    ) {
+        let Owned { shape: instance, key } = &self.instances[leaf.index()];
+        if probe.hide && key.hidden_from_lens() {
+            return;
+        }
+        let Some(localized) = instance.localized(probe) else { return };
+        // Of what lies equally near the lower primitive is nearer, so it has to be found.
+        let limit = if nearest.found() { nearest.t.next_up() } else { probe.limit };
+        let mut inner_trail = [0; LEVELS];
+        let inner = Nearest::before(limit);
+        let found = instance.geometry().search::<ANY, FAST>(self.machine, &localized, inner, stack, &mut inner_trail);
+        if let Some(found) = found
+            && nearest.loses_to(found.t, *key)
+        {
+            *nearest = Nearest { t: found.t, key: *key, slot: leaf.0, coordinates: found.coordinates };
+            trail[0] = found.slot;
+            trail[1..].copy_from_slice(&inner_trail[..LEVELS - 1]);
         }
     }
 }

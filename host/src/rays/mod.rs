@@ -14,6 +14,7 @@ mod bvh;
 mod collapse;
 mod cylinder;
 mod disk;
+mod instance;
 mod lanes;
 mod nearest;
 mod node;
@@ -32,6 +33,7 @@ pub use build::BuildStats;
 pub use bvh::{Bvh, Triangles};
 pub use cylinder::Cylinder;
 pub use disk::Disk;
+pub use instance::{Instance, LEVELS};
 pub use parallelogram::Parallelogram;
 pub use primitives::{PrimitiveId, Primitives, Visibility};
 pub use sphere::Sphere;
@@ -51,6 +53,8 @@ pub struct RayHit {
     pub coordinates: (f32, f32),
     /// Where the structure that answered keeps the primitive.
     slot: u32,
+    /// Of an instance: where the trees within it keep what was hit there, from the outermost inwards.
+    trail: [u32; LEVELS],
 }
 
 /// What rays are cast against.
@@ -61,6 +65,9 @@ pub trait Geometry {
 
     /// Whether anything is on the ray; the same answer as `closest(ray).is_some()`, sooner.
     fn occluded(&self, ray: &Ray) -> bool;
+
+    /// What a hit lies on, from the outermost instance inwards; the last one is the primitive itself.
+    fn path(&self, hit: &RayHit) -> impl Iterator<Item = PrimitiveId>;
 
     /// The point of a hit that [`Self::closest`] gave for this ray, reconstructed on the primitive itself.
     fn surface(&self, ray: &Ray, hit: &RayHit) -> SurfacePoint;

@@ -4,7 +4,7 @@ use super::{bounds::Bounds, lanes::Lanes, probe::Probe};
 
 pub(super) use super::lanes::WIDTH;
 
-/// What a child is: an inner node, or a leaf of one kind; the kind is in the top three bits.
+/// What a child is: an inner node, or a leaf of one kind; the kind is in the top four bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Child(pub u32);
 
@@ -13,22 +13,23 @@ pub(super) struct Child(pub u32);
 #[repr(u32)]
 pub(super) enum Leaf {
     /// A packet of up to four triangles.
-    Packet = 4,
-    Sphere = 5,
-    Disk = 6,
-    Cylinder = 7,
+    Packet = 8,
+    Sphere = 9,
+    Disk = 10,
+    Cylinder = 11,
+    Instance = 12,
 }
 
 impl Child {
     /// How many leaves of a kind there can be.
-    pub const MOST: usize = 1 << 27;
+    pub const MOST: usize = 1 << 26;
 
     pub fn inner(index: usize) -> Self {
         Self(index as u32)
     }
 
     pub fn leaf(kind: Leaf, index: usize) -> Self {
-        Self((kind as u32) << 29 | index as u32)
+        Self((kind as u32) << 28 | index as u32)
     }
 
     #[inline(always)]
@@ -38,10 +39,11 @@ impl Child {
 
     #[inline(always)]
     pub fn kind(self) -> Leaf {
-        match self.0 >> 29 {
-            5 => Leaf::Sphere,
-            6 => Leaf::Disk,
-            7 => Leaf::Cylinder,
+        match self.0 >> 28 {
+            9 => Leaf::Sphere,
+            10 => Leaf::Disk,
+            11 => Leaf::Cylinder,
+            12 => Leaf::Instance,
             _ => Leaf::Packet,
         }
     }
@@ -49,7 +51,7 @@ impl Child {
     /// Of a leaf, among its kind.
     #[inline(always)]
     pub fn index(self) -> usize {
-        (self.0 & 0x1fff_ffff) as usize
+        (self.0 & 0x0fff_ffff) as usize
     }
 }
 

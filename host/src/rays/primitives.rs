@@ -2,7 +2,9 @@
 
 use bidir_kernel::Vec3;
 
-use super::{cylinder::Cylinder, disk::Disk, nearest::Key, parallelogram::Parallelogram, sphere::Sphere, triangle::Triangle};
+use super::{
+    cylinder::Cylinder, disk::Disk, instance::Instance, nearest::Key, parallelogram::Parallelogram, sphere::Sphere, triangle::Triangle,
+};
 
 /// A primitive's number: how many were inserted before it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -27,6 +29,7 @@ pub struct Primitives {
     pub(super) spheres: Kind<Sphere>,
     pub(super) disks: Kind<Disk>,
     pub(super) cylinders: Kind<Cylinder>,
+    pub(super) instances: Kind<Instance>,
 }
 
 /// The primitives of one kind and whose they are.
@@ -109,6 +112,14 @@ impl Primitives {
     pub fn cylinder(&mut self, shape: Cylinder, visibility: Visibility) -> PrimitiveId {
         let key = self.next(visibility);
         self.cylinders.push(shape, key);
+        PrimitiveId(key.primitive())
+    }
+
+    /// Inserts an instance.
+    pub fn instance(&mut self, shape: Instance, visibility: Visibility) -> PrimitiveId {
+        let key = self.next(visibility);
+        self.some_hidden |= shape.geometry().some_hidden;
+        self.instances.push(shape, key);
         PrimitiveId(key.primitive())
     }
 

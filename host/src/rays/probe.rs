@@ -22,6 +22,8 @@ pub(super) struct Probe {
     pub direction: Vec3,
     /// Hits are nearer than this.
     pub limit: f32,
+    /// Whether the ray ends on the lens.
+    pub lens: bool,
     /// Whether primitives that are hidden from the lens are passed.
     pub hide: bool,
 
@@ -48,7 +50,12 @@ impl Probe {
     /// `None` where the ray cannot hit anything in `bounds`, because it is not finite, has no direction or no length.
     #[inline(always)]
     pub fn new(ray: &Ray, bounds: &Bounds, some_hidden: bool) -> Option<Self> {
-        let (o, d) = (ray.origin, ray.direction);
+        Self::within(ray.origin, ray.direction, ray.t_max * END, ray.segment == Segment::Lens, bounds, some_hidden)
+    }
+
+    /// The same for a ray that ends before `limit`.
+    #[inline(always)]
+    pub fn within(o: Vec3, d: Vec3, limit: f32, lens: bool, bounds: &Bounds, some_hidden: bool) -> Option<Self> {
         // Each product is 0, or NaN where its factor is not finite.
         let finite = (o.x * 0.0 + o.y * 0.0 + o.z * 0.0) + (d.x * 0.0 + d.y * 0.0 + d.z * 0.0) == 0.0;
         let [x, y, z] = [d.x.abs(), d.y.abs(), d.z.abs()];
@@ -60,7 +67,6 @@ impl Probe {
             2
         };
         let largest = x.max(y).max(z);
-        let limit = ray.t_max * END;
         if !(finite && largest >= f32::MIN_POSITIVE && limit > 0.0) {
             return None;
         }
@@ -68,13 +74,15 @@ impl Probe {
         let reach = bounds.reach(o);
         let slack = SLACK * reach.x.max(reach.y).max(reach.z);
         let inverse = [inverse(d.x), inverse(d.y), inverse(d.z)];
+        let (origin, direction) = (o, d);
         let (o, d) = (o.to_array(), d.to_array());
         let axes = [[1, 2, 0], [2, 0, 1], [0, 1, 2]][last];
         let mut probe = Self {
-            origin: ray.origin,
-            direction: ray.direction,
+            origin,
+            direction,
             limit,
-            hide: some_hidden && ray.segment == Segment::Lens,
+            lens,
+            hide: some_hidden && lens,
             fusible: true,
             backwards: d.map(f32::is_sign_negative),
             near_origin: [0.0; 3],

@@ -20,16 +20,19 @@ pub struct SurfacePoint {
 }
 
 impl SurfacePoint {
-    /// From a point and a normal that are exact compared to f32; `bounds` is the box of all there is.
-    ///
-    /// With u the relative error of one rounding, the offset is twice the sum, along the normal, of
-    /// u·|p| for rounding the position, u·|p| for adding the offset to it, and u·reach for rounding the direction of a segment
-    /// that ends here after coming from the other end of the scene.
-    pub(super) fn new(position: DVec3, normal: DVec3, local: DVec3, bounds: &Bounds) -> Self {
-        const U: f64 = f32::EPSILON as f64 / 2.0;
-        let rounded = position.as_vec3();
-        let error = (position.abs() * 2.0 + bounds.reach(rounded).as_dvec3()) * U;
+    /// From a point and a normal that are exact compared to f32, and how far rounding may move the point along each axis.
+    /// The offset is twice that, along the normal.
+    pub(super) fn new(position: DVec3, normal: DVec3, local: DVec3, error: DVec3) -> Self {
         let offset = 2.0 * normal.abs().dot(error);
-        Self { position: rounded, normal: normal.as_vec3(), offset: offset as f32, local: local.as_vec3() }
+        Self { position: position.as_vec3(), normal: normal.as_vec3(), offset: offset as f32, local: local.as_vec3() }
     }
+}
+
+/// How far rounding may move a point along each axis, where `bounds` is the box of all there is.
+///
+/// With u the relative error of one rounding, this is the sum of u·|p| for rounding the position, u·|p| for adding an offset to it,
+/// and u·reach for rounding the direction of a segment that ends here after coming from the other end of the scene.
+pub(super) fn rounding(position: DVec3, bounds: &Bounds) -> DVec3 {
+    const U: f64 = f32::EPSILON as f64 / 2.0;
+    (position.abs() * 2.0 + bounds.reach(position.as_vec3()).as_dvec3()) * U
 }

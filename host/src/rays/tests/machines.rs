@@ -1,9 +1,12 @@
 //! Whatever registers the machine has, hits are the same, bit for bit.
 
-use bidir_kernel::{Ray, Vec3};
+use std::sync::Arc;
 
-use super::random::{Random, ray, segment, sphere_mesh};
-use crate::rays::{Bvh, Cylinder, Disk, Geometry, Primitives, RayHit, Sphere, Triangles, Visibility::Everywhere};
+use bidir_kernel::{Ray, Vec3};
+use glam::{DAffine3, DMat3};
+
+use super::random::{Random, ray, segment, sphere_mesh, tree};
+use crate::rays::{Bvh, Cylinder, Disk, Geometry, Instance, Primitives, RayHit, Sphere, Triangles, Visibility::Everywhere};
 
 /// Triangles, closed and loose, and everything else there is, about a place.
 fn crowd(centre: Vec3, size: f32, seed: u64) -> Bvh {
@@ -23,6 +26,17 @@ fn crowd(centre: Vec3, size: f32, seed: u64) -> Bvh {
         let (x, y) = random.direction().any_orthonormal_pair();
         primitives.disk(Disk { centre: at, x: x * radius, y: y * radius }, Everywhere);
         primitives.cylinder(Cylinder { p0: at, p1: at + x * (3.0 * radius), x: y, radius }, Everywhere);
+    }
+    let (corners, faces) = sphere_mesh(Vec3::X, 1.0, 8);
+    let ball = Arc::new(tree(&corners, &faces));
+    for _ in 0..30 {
+        let turned = DMat3::from_axis_angle(random.direction().as_dvec3().normalize(), f64::from(random.unit())) * f64::from(0.2 * size);
+        let at = (centre + random.cube() * size).as_dvec3();
+        let twice = DAffine3 { matrix3: turned, translation: at };
+        // The second lies exactly in the first's place.
+        for _ in 0..2 {
+            primitives.instance(Instance::new(Arc::clone(&ball), twice).expect("an inverse"), Everywhere);
+        }
     }
     Bvh::build(primitives)
 }
@@ -56,6 +70,7 @@ fn hits_do_not_depend_on_the_machine() {
         for ray in rays(centre, size, 100 + seed as u64) {
             let (one, other) = (best.closest(&ray), portable.closest(&ray));
             assert_eq!(bits(one), bits(other), "{ray:?}: {one:?} and {other:?}");
+            assert!(one.is_none_or(|hit| best.path(&hit).eq(portable.path(&hit))));
             assert_eq!(best.occluded(&ray), one.is_some(), "{ray:?}");
             assert_eq!(portable.occluded(&ray), one.is_some(), "{ray:?}");
             hits += usize::from(one.is_some());
