@@ -77,7 +77,7 @@ pub enum Triangles {
 type Trail = [u32; LEVELS];
 
 /// One ray's way down.
-struct Descent<'a, const ANY: bool, const FAST: bool> {
+struct Descent<'a, const ANY: bool, const FAST: bool, const NESTED: bool> {
     bvh: &'a Bvh,
     probe: &'a Probe,
     root: Child,
@@ -86,7 +86,7 @@ struct Descent<'a, const ANY: bool, const FAST: bool> {
     trail: &'a mut Trail,
 }
 
-impl<const ANY: bool, const FAST: bool> Work for Descent<'_, ANY, FAST> {
+impl<const ANY: bool, const FAST: bool, const NESTED: bool> Work for Descent<'_, ANY, FAST, NESTED> {
     type Output = Nearest;
 
     #[inline(always)]
@@ -99,7 +99,7 @@ impl<const ANY: bool, const FAST: bool> Work for Descent<'_, ANY, FAST> {
             let next = if current.is_leaf() {
                 match current.kind() {
                     Leaf::Packet => bvh.meet_packet::<FAST>(current, probe, &mut nearest),
-                    Leaf::Instance => bvh.meet_instance::<ANY, FAST>(current, probe, &mut nearest, &mut stack[waiting..], trail),
+                    Leaf::Instance if NESTED => bvh.meet_instance::<ANY, FAST>(current, probe, &mut nearest, &mut stack[waiting..], trail),
                     _ => bvh.meet_shape(current, probe, &mut nearest),
                 }
                 if ANY && nearest.found() {
@@ -331,7 +331,12 @@ impl Bvh {
         trail: &mut Trail,
     ) -> Option<Nearest> {
         let machine = if probe.fusible { machine } else { Machine::Any };
-        let mut nearest = machine.run(Descent::<ANY, FAST> { bvh: self, probe, root: self.root?, nearest, stack, trail });
+        let (bvh, root) = (self, self.root?);
+        let mut nearest = if self.levels == 0 {
+            machine.run(Descent::<ANY, FAST, false> { bvh, probe, root, nearest, stack, trail })
+        } else {
+            machine.run(Descent::<ANY, FAST, true> { bvh, probe, root, nearest, stack, trail })
+        };
         if !nearest.found() {
             return None;
         }

@@ -46,7 +46,7 @@ impl Packet {
 
     /// The triangle of a lane.
     pub fn triangle(&self, lane: usize) -> Triangle {
-        self.corners.map(|corner| Vec3::from_array(corner.map(|coordinate| coordinate.to_array()[lane])))
+        std::array::from_fn(|corner| Vec3::from_array(std::array::from_fn(|axis| self.corners[corner][axis].as_array()[lane])))
     }
 
     /// Offers what the ray hits here. `slot` is that of the first lane.
