@@ -181,7 +181,7 @@ impl<'a> Outline<'a> {
         }
         let optional = [(export::BSDF_EVAL_N, vec![i; 4], vec![]), (export::BSDF_VERTEX, [vec![i; 3], vec![f; 9]].concat(), vec![])];
         let there = |name: &str| self.signatures.iter().any(|(known, _)| known == name);
-        needed.extend(optional.into_iter().filter(|(name, ..)| there(name)));
+        needed.extend(optional.into_iter().filter(|(name, ..)| kind == Kind::Bsdf && there(name)));
         for (name, parameters, results) in needed {
             let expected = (parameters, results);
             let Some((_, signature)) = self.signatures.iter().find(|(known, _)| known == name) else {

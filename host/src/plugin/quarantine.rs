@@ -44,7 +44,7 @@ pub enum Asked {
 }
 
 impl Asked {
-    /// The export that was called.
+    /// The export that answers just this; a call that asks more at once counts as its parts.
     pub fn export(&self) -> &'static str {
         match self {
             Self::Eval { .. } => bidir_abi::export::BSDF_EVAL,

@@ -269,8 +269,10 @@ impl Bsdf for SandboxedBsdf<'_> {
                 }
                 Ok(asked)
             });
-            if answered != Some(false) {
-                return;
+            match answered {
+                Some(true) => return,
+                None => return scatters.fill(Scatter::NONE),
+                Some(false) => {}
             }
         }
         for (scatter, wi) in scatters.iter_mut().zip(wi) {

@@ -93,12 +93,12 @@ impl<const ANY: bool, const FAST: bool, const NESTED: bool> Work for Descent<'_,
     fn run<L: Lanes>(self, lanes: L) -> Nearest {
         let Self { bvh, probe, root, mut nearest, stack, trail } = self;
         let slabs = Slabs::new(lanes, probe);
-        let mut current = root;
+        let (mut current, mut entry) = (root, 0.0);
         let mut waiting = 0;
         loop {
             let next = if current.is_leaf() {
                 match current.kind() {
-                    Leaf::Packet => bvh.meet_packet::<FAST>(current, probe, &mut nearest),
+                    Leaf::Packet => bvh.meet_packet::<FAST>(current, probe, entry, &mut nearest),
                     Leaf::Instance if NESTED => bvh.meet_instance::<ANY, FAST>(current, probe, &mut nearest, &mut stack[waiting..], trail),
                     _ => bvh.meet_shape(current, probe, &mut nearest),
                 }
@@ -111,7 +111,7 @@ impl<const ANY: bool, const FAST: bool, const NESTED: bool> Work for Descent<'_,
                 let (mask, entries) = slabs.enter(node, nearest.t);
                 order(lanes, bvh, node, (mask, &entries), stack, &mut waiting)
             };
-            current = match next {
+            (current, entry) = match next {
                 Some(child) => child,
                 None => loop {
                     if waiting == 0 {
@@ -120,7 +120,7 @@ impl<const ANY: bool, const FAST: bool, const NESTED: bool> Work for Descent<'_,
                     waiting -= 1;
                     let (child, entry) = stack[waiting];
                     if entry <= nearest.t {
-                        break child;
+                        break (child, entry);
                     }
                 },
             };
@@ -132,6 +132,7 @@ impl Geometry for Bvh {
     #[inline]
     fn closest(&self, ray: &Ray) -> Option<RayHit> {
         let (Nearest { t, key, slot, coordinates }, trail) = self.cast::<false>(ray)?;
+        let trail = if Child(slot).kind() == Leaf::Instance { self.trimmed(Child(slot), trail) } else { [0; LEVELS] };
         Some(RayHit { t, primitive: PrimitiveId(key.primitive()), coordinates, slot, trail })
     }
 
@@ -270,7 +271,8 @@ impl Bvh {
                 let (origin, direction) = instance.to_local(at.origin, at.direction);
                 let (slot, trail) = trail.split_first().unwrap_or((&0, &[]));
                 let inner = instance.geometry().found(OnRay { origin, direction, t: at.t }, Child(*slot), (one, two), trail);
-                let (position, normal, error) = instance.to_world(inner.position, inner.normal, inner.error);
+                let reach = self.bounds.reach((at.origin + at.direction * at.t).as_vec3()).as_dvec3();
+                let (position, normal, error) = instance.to_world(inner.position, inner.normal, inner.error, reach);
                 Found { position, normal, local: inner.local, error: error + rounding(position, &self.bounds) }
             }
         }
@@ -293,6 +295,20 @@ impl Bvh {
                 self.exact_distance(probe, Child(nearest.slot), &trail).filter(|t| *t > 0.0 && *t < probe.limit).unwrap_or(nearest.t);
         }
         Some((nearest, trail))
+    }
+
+    /// Without what other hits left behind the last step.
+    #[cold]
+    fn trimmed(&self, leaf: Child, trail: Trail) -> Trail {
+        let mut trimmed = [0; LEVELS];
+        let (mut bvh, mut leaf) = (self, leaf);
+        for (slot, kept) in trail.into_iter().zip(&mut trimmed) {
+            if leaf.kind() != Leaf::Instance {
+                break;
+            }
+            (bvh, leaf, *kept) = (bvh.instances[leaf.index()].shape.geometry(), Child(slot), slot);
+        }
+        trimmed
     }
 
     /// How far it is to a triangle that was hit; `None` for other shapes, whose distances are exact.
@@ -357,10 +373,10 @@ impl Bvh {
 
     /// Offers what the ray hits of a packet.
     #[inline(always)]
-    fn meet_packet<const FAST: bool>(&self, leaf: Child, probe: &Probe, nearest: &mut Nearest) {
+    fn meet_packet<const FAST: bool>(&self, leaf: Child, probe: &Probe, entry: f32, nearest: &mut Nearest) {
         let slot = Child::leaf(Leaf::Packet, leaf.index() * PACKET);
         let packet = &self.packets[leaf.index()];
-        if FAST { packet.intersect_fast(probe, slot.0, nearest) } else { packet.intersect(probe, slot.0, nearest) }
+        if FAST { packet.intersect_fast(probe, slot.0, nearest) } else { packet.intersect(probe, slot.0, entry, nearest) }
     }
 
     /// Offers what the ray hits of any other shape.
@@ -403,7 +419,7 @@ impl Bvh {
         }
         let Some(localized) = instance.localized(probe) else { return };
         // Of what lies equally near the lower primitive is nearer, so it has to be found.
-        let limit = if nearest.found() { nearest.t.next_up() } else { probe.limit };
+        let limit = nearest.t.next_up().min(probe.limit);
         let mut inner_trail = [0; LEVELS];
         let inner = Nearest::before(limit);
         let found = instance.geometry().search::<ANY, FAST>(self.machine, &localized, inner, stack, &mut inner_trail);
@@ -426,7 +442,7 @@ fn order<L: Lanes>(
     (mut mask, entries): (u32, &[f32; WIDTH]),
     stack: &mut [Waiting],
     waiting: &mut usize,
-) -> Option<Child> {
+) -> Option<Waiting> {
     if mask == 0 {
         return None;
     }
@@ -434,7 +450,7 @@ fn order<L: Lanes>(
     mask &= mask - 1;
     let mut first = (node.children[lane], entries[lane]);
     if mask == 0 {
-        return Some(first.0);
+        return Some(first);
     }
     bvh.prefetch(lanes, first.0);
     let floor = *waiting;
@@ -454,5 +470,5 @@ fn order<L: Lanes>(
         stack[place] = one;
         *waiting += 1;
     }
-    Some(first.0)
+    Some(first)
 }

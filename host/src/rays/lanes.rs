@@ -1,4 +1,5 @@
-//! Eight numbers at once: AVX2's registers where the machine has them, else two fours. Both round alike.
+//! Eight numbers at once: AVX2's registers where the machine has them, else two fours.
+//! Both are off by less than the probe's slack.
 
 #[cfg(target_arch = "x86_64")]
 use pulp::{NullaryFnOnce, x86::V3};

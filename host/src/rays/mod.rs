@@ -6,7 +6,8 @@
 //! No constant decides how near is too near. Distances that rounding could put on the wrong side of a ray's start or end
 //! are computed again in f64, and a hit point comes with the distance a ray has to keep from it to clear its rounding error
 //! ([`SurfacePoint::offset`]). Answers have the same bits on every machine: nothing but IEEE 754 additions,
-//! multiplications, divisions and square roots, none of them fused; and equal distances go to the lower primitive.
+//! multiplications, divisions and square roots, none of them fused where a hit's numbers come from; and equal distances go to the lower
+//! primitive.
 
 mod bounds;
 mod build;

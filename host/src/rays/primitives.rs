@@ -20,7 +20,7 @@ pub enum Visibility {
     HiddenFromLens,
 }
 
-/// A list of primitives, kept by kind. All of them have to be finite and of more than no area; at most 2^29.
+/// A list of primitives, kept by kind. All of them have to be finite and of more than no area; at most 2^28.
 #[derive(Clone, Debug, Default)]
 pub struct Primitives {
     count: u32,
@@ -124,7 +124,7 @@ impl Primitives {
     }
 
     fn next(&mut self, visibility: Visibility) -> Key {
-        assert!(self.count < 1 << 29, "a tree holds at most 2^29 primitives");
+        assert!(self.count < 1 << 28, "a tree holds at most 2^28 primitives");
         let hidden = visibility == Visibility::HiddenFromLens;
         let key = Key::new(self.count, hidden);
         self.count += 1;

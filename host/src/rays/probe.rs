@@ -73,6 +73,9 @@ impl Probe {
 
         let reach = bounds.reach(o);
         let slack = SLACK * reach.x.max(reach.y).max(reach.z);
+        if !slack.is_finite() {
+            return None;
+        }
         let inverse = [inverse(d.x), inverse(d.y), inverse(d.z)];
         let (origin, direction) = (o, d);
         let (o, d) = (o.to_array(), d.to_array());
@@ -94,7 +97,7 @@ impl Probe {
             depth: f32x4::splat(largest),
         };
         for (axis, origin) in o.into_iter().enumerate() {
-            // Always more than half a step of the origin, or adding it would do nothing.
+            // Always more than half a step of the origin, or adding it would do nothing; and two roundings of origin · inverse.
             let wide = slack + 4.0 * U * origin.abs();
             let out = if probe.backwards[axis] { -wide } else { wide };
             probe.near_origin[axis] = origin + out;

@@ -49,9 +49,9 @@ impl Packet {
         std::array::from_fn(|corner| Vec3::from_array(std::array::from_fn(|axis| self.corners[corner][axis].as_array()[lane])))
     }
 
-    /// Offers what the ray hits here. `slot` is that of the first lane.
+    /// Offers what the ray hits here. `slot` is that of the first lane; `entry` is where the ray enters the box of all lanes.
     #[inline(always)]
-    pub fn intersect(&self, probe: &Probe, slot: u32, nearest: &mut Nearest) {
+    pub fn intersect(&self, probe: &Probe, slot: u32, entry: f32, nearest: &mut Nearest) {
         let [x, y, z] = probe.axes;
         let [shear_x, shear_y, scale_z] = probe.shear;
         let sheared = |corner: &[f32x4; 3]| {
@@ -89,7 +89,7 @@ impl Packet {
         }
 
         let error = distance_error(probe, [ax, bx, cx], [ay, by, cy], [az, bz, cz], [u, v, w], per_area);
-        let unsure = t.simd_le(error) | (t - f32x4::splat(probe.limit)).abs().simd_le(error);
+        let unsure = t.simd_le(error) | (t - f32x4::splat(probe.limit)).abs().simd_le(error) | t.simd_lt(f32x4::splat(entry));
         let unsure = unsure.to_bitmask();
         let (t, v, w) = (t.to_array(), (v * per_area).to_array(), (w * per_area).to_array());
         while candidates != 0 {
@@ -135,7 +135,8 @@ impl Packet {
         }
     }
 
-    /// The distance to the plane of a triangle whose f32 distance could be on the wrong side of the ray's start or end.
+    /// The distance to the plane of a triangle whose f32 distance could be on the wrong side of the ray's start or end, or before the
+    /// box of the triangle: then it would depend on the order of the search whether it is found.
     #[cold]
     #[inline(never)]
     fn unsure_distance(&self, probe: &Probe, lane: usize) -> f32 {

@@ -158,11 +158,13 @@ impl Question for EvalMany<'_> {
         if turn > 0.0 {
             return shader.eval_n(self.wo, self.wi, self.carried, self.scatters);
         }
-        let mut seen_turned = [Vec3::ZERO; BATCH];
-        for (there, wi) in seen_turned.iter_mut().zip(self.wi) {
-            *there = turned(*wi, turn);
+        for (wi, scatters) in self.wi.chunks(BATCH).zip(self.scatters.chunks_mut(BATCH)) {
+            let mut seen_turned = [Vec3::ZERO; BATCH];
+            for (there, wi) in seen_turned.iter_mut().zip(wi) {
+                *there = turned(*wi, turn);
+            }
+            shader.eval_n(turned(self.wo, turn), &seen_turned[..wi.len()], self.carried, scatters);
         }
-        shader.eval_n(turned(self.wo, turn), &seen_turned[..self.wi.len().min(BATCH)], self.carried, self.scatters);
     }
 }
 

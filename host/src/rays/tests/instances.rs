@@ -10,13 +10,14 @@ use crate::rays::{Bvh, Geometry, Instance, LEVELS, PrimitiveId, Primitives, Sphe
 
 /// A rotation, a stretch along each axis, perhaps a reflection, and a move.
 fn placement(random: &mut Random, size: f64) -> DAffine3 {
-    let turn = DMat3::from_axis_angle(random.direction().as_dvec3().normalize(), 6.0 * f64::from(random.unit()));
+    let mut turn = || DMat3::from_axis_angle(random.direction().as_dvec3().normalize(), 6.0 * f64::from(random.unit()));
+    let (turn, before) = (turn(), turn());
     let mut stretch = || 10.0_f64.powf(f64::from(random.unit()) - 0.5);
     let mut stretched = DVec3::new(stretch(), stretch(), stretch()) * size;
     if random.unit() < 0.5 {
         stretched.x = -stretched.x;
     }
-    DAffine3 { matrix3: turn * DMat3::from_diagonal(stretched), translation: random.cube().as_dvec3() * (4.0 * size) }
+    DAffine3 { matrix3: turn * DMat3::from_diagonal(stretched) * before, translation: random.cube().as_dvec3() * (4.0 * size) }
 }
 
 #[test]
@@ -108,6 +109,8 @@ fn what_cannot_be_placed_is_no_instance() {
     assert!(Instance::new(Arc::clone(&ball), DAffine3::from_scale(DVec3::new(1.0, 0.0, 1.0))).is_none());
     assert!(Instance::new(Arc::clone(&ball), DAffine3::from_translation(DVec3::new(f64::NAN, 0.0, 0.0))).is_none());
     assert!(Instance::new(Arc::new(Bvh::build(Primitives::new())), DAffine3::IDENTITY).is_none());
+    assert!(Instance::new(Arc::clone(&ball), DAffine3::from_scale(DVec3::splat(1e39))).is_none());
+    assert!(Instance::new(ball, DAffine3::from_scale(DVec3::splat(1e20))).is_some());
 }
 
 /// Rays that leave an instance must not find it again, however it is stretched and wherever it stands.

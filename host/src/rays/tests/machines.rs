@@ -70,6 +70,7 @@ fn hits_do_not_depend_on_the_machine() {
         for ray in rays(centre, size, 100 + seed as u64) {
             let (one, other) = (best.closest(&ray), portable.closest(&ray));
             assert_eq!(bits(one), bits(other), "{ray:?}: {one:?} and {other:?}");
+            assert_eq!(one, other);
             assert!(one.is_none_or(|hit| best.path(&hit).eq(portable.path(&hit))));
             assert_eq!(best.occluded(&ray), one.is_some(), "{ray:?}");
             assert_eq!(portable.occluded(&ray), one.is_some(), "{ray:?}");
