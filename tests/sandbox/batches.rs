@@ -6,7 +6,7 @@ use std::sync::Arc;
 use bidir::plugin::{Engine, Kind, Module, Roster, Sandbox, SandboxedBsdf, ShaderId, Strictness};
 use bidir_kernel::{BATCH, Bsdf, Carried, Sampler, Scatter, Vec3, sampler::Independent};
 
-use super::root;
+use super::{direction, root};
 
 fn modules() -> Vec<Arc<Module>> {
     let engine = Engine::new().expect("an engine");
@@ -16,12 +16,6 @@ fn modules() -> Vec<Arc<Module>> {
         .map(|file| Arc::new(Module::load(&engine, &file).expect("a module")))
         .filter(|module| module.manifest().kind == Kind::Bsdf)
         .collect()
-}
-
-fn direction(numbers: &mut Independent) -> Vec3 {
-    let (z, phi) = (2.0 * numbers.next() - 1.0, std::f32::consts::TAU * numbers.next());
-    let r = (1.0 - z * z).sqrt();
-    Vec3::new(r * phi.cos(), r * phi.sin(), z)
 }
 
 fn bits(scatter: &Scatter) -> [u32; 5] {

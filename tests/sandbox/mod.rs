@@ -19,7 +19,7 @@ use bidir::{
     render::Job,
     scene::{Scene, description::Material},
 };
-use bidir_kernel::{Heuristic, Techniques};
+use bidir_kernel::{Heuristic, Sampler, Techniques, Vec3, sampler::Independent};
 
 use crate::pictures::Subject;
 
@@ -61,4 +61,11 @@ fn text_of(path: &Path) -> String {
 fn image(subject: &Subject, techniques: Techniques, samples: u32, threads: usize) -> Image {
     let job = subject.job(subject.strategy(techniques, Heuristic::Balance), samples, 5);
     subject.image(&Job { threads, ..job })
+}
+
+/// Uniform over the sphere.
+fn direction(numbers: &mut Independent) -> Vec3 {
+    let (z, phi) = (2.0 * numbers.next() - 1.0, std::f32::consts::TAU * numbers.next());
+    let r = (1.0 - z * z).sqrt();
+    Vec3::new(r * phi.cos(), r * phi.sin(), z)
 }

@@ -3,9 +3,9 @@
 use std::sync::Arc;
 
 use bidir::plugin::{Engine, Kind, Module, Roster, Sandbox, ShaderId, Strictness, Value};
-use bidir_kernel::{Bsdf, Carried, Profile, Sampler, Vec2, Vec3, sampler::Independent};
+use bidir_kernel::{Bsdf, Carried, Profile, Sampler, Vec2, sampler::Independent};
 
-use super::root;
+use super::{direction, root};
 
 /// Questions to each shader.
 const ASKED: u64 = 4000;
@@ -31,12 +31,6 @@ fn block(module: &Module, numbers: &mut Independent) -> Vec<u8> {
         }
     }
     block
-}
-
-fn direction(numbers: &mut Independent) -> Vec3 {
-    let (z, phi) = (2.0 * numbers.next() - 1.0, std::f32::consts::TAU * numbers.next());
-    let r = (1.0 - z * z).sqrt();
-    Vec3::new(r * phi.cos(), r * phi.sin(), z)
 }
 
 fn asked(module: &Arc<Module>, block: &[u8]) -> (Sandbox, ShaderId) {
