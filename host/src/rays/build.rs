@@ -81,7 +81,7 @@ impl Primitives {
 }
 
 fn binary_tree(bounds: &[Bounds]) -> Bvh2 {
-    /// How many nodes reinsertion tries to place better, and which share that is at least and at most: it takes a quarter of a build.
+    /// How many nodes reinsertion tries to place better, and which share that is at least and at most.
     const REINSERTED: f32 = 150_000.0;
     const SHARE: [f32; 2] = [0.05, 0.15];
     /// Below this many primitives the whole tree is worth improving.

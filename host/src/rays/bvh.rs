@@ -224,12 +224,6 @@ impl Bvh {
             + size_of_val(&*self.instances)
     }
 
-    /// The box of everything, and what lies beyond nothing.
-    #[inline(always)]
-    pub(super) fn extent(&self) -> &Bounds {
-        &self.bounds
-    }
-
     fn key(&self, leaf: Child) -> Key {
         match leaf.kind() {
             Leaf::Packet => self.packets[leaf.index() / PACKET].keys[leaf.index() % PACKET],
@@ -271,7 +265,7 @@ impl Bvh {
                 let (origin, direction) = instance.to_local(at.origin, at.direction);
                 let (slot, trail) = trail.split_first().unwrap_or((&0, &[]));
                 let inner = instance.geometry().found(OnRay { origin, direction, t: at.t }, Child(*slot), (one, two), trail);
-                let reach = self.bounds.reach((at.origin + at.direction * at.t).as_vec3()).as_dvec3();
+                let reach = self.bounds.reach(on_ray().as_vec3()).as_dvec3();
                 let (position, normal, error) = instance.to_world(inner.position, inner.normal, inner.error, reach);
                 Found { position, normal, local: inner.local, error: error + rounding(position, &self.bounds) }
             }

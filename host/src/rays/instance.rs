@@ -51,7 +51,7 @@ impl Instance {
         let (origin, direction) = probe.in_f64();
         let (origin, direction) = self.to_local(origin, direction);
         let within = &self.geometry;
-        Probe::within(origin.as_vec3(), direction.as_vec3(), probe.limit, probe.lens, within.extent(), within.some_hidden)
+        Probe::within(origin.as_vec3(), direction.as_vec3(), probe.limit, probe.lens, &within.bounds(), within.some_hidden)
     }
 
     /// A ray in the instance's coordinates.

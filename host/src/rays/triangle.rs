@@ -143,7 +143,7 @@ impl Packet {
         self.exact_distance(probe, lane)
     }
 
-    /// The distance to the plane of a triangle, within two roundings however much it is grazed.
+    /// The distance to the plane of a triangle, computed in f64.
     #[inline(always)]
     pub fn exact_distance(&self, probe: &Probe, lane: usize) -> f32 {
         let [a, b, c] = self.triangle(lane).map(|corner| corner.as_dvec3());
