@@ -6,10 +6,10 @@ use std::sync::{
 };
 
 /// The edge of a tile, in pixels.
-pub const TILE: u32 = 16;
+pub const TILE: u32 = 32;
 
 /// How many units may be under way or parked at once: it bounds the memory of buffers that wait for their turn.
-pub const WINDOW: u64 = 1024;
+pub const WINDOW: u64 = 256;
 
 /// One sample of every pixel of a tile. Units are numbered sample by sample, and tile by tile (row by row) within a sample;
 /// the film adds them up in that order, whoever made them and however they are divided into passes.
@@ -103,7 +103,7 @@ mod tests {
 
     #[test]
     fn every_pixel_comes_once_per_sample() {
-        for (width, height) in [(1, 1), (16, 16), (33, 17), (8192, 1)] {
+        for (width, height) in [(1, 1), (32, 32), (65, 33), (8192, 1)] {
             let dispatch = Dispatch::new(width, height);
             for sample in 0..2 {
                 let mut seen = vec![0; (width * height) as usize];

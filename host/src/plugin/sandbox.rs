@@ -282,18 +282,20 @@ impl Bsdf for SandboxedBsdf<'_> {
 
     #[inline]
     fn eval_and_sample(&self, wo: Vec3, wi: Vec3, u: [Real; 3], carried: Carried) -> (Scatter, Option<Scattered>) {
-        let answered = self.sandbox.ask(self.id, |instance, block| {
-            if !instance.bsdf_vertex(block, code(carried), wo.to_array(), wi.to_array(), u)? {
-                return Ok(None);
+        // The answer is written where it is wanted: what a call answers is moved as little as it can be.
+        let mut answer = (Scatter::NONE, None);
+        let asked = self.sandbox.ask(self.id, |instance, block| {
+            let asked = instance.bsdf_vertex(block, code(carried), wo.to_array(), wi.to_array(), u)?;
+            if asked {
+                let VertexOut { eval, sample } = VertexOut::from_bytes(instance.record());
+                answer = (self.evaluated(&eval, wo, wi, carried), self.sampled(&sample, wo, u, carried));
             }
-            let VertexOut { eval, sample } = VertexOut::from_bytes(instance.record());
-            Ok(Some((self.evaluated(&eval, wo, wi, carried), self.sampled(&sample, wo, u, carried))))
+            Ok(asked)
         });
-        match answered {
-            Some(Some(answer)) => answer,
-            Some(None) => (self.eval(wo, wi, carried), self.sample(wo, u, carried)),
-            None => (Scatter::NONE, None),
+        if asked == Some(false) {
+            answer = (self.eval(wo, wi, carried), self.sample(wo, u, carried));
         }
+        answer
     }
 }
 

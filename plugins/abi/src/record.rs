@@ -113,7 +113,7 @@ macro_rules! word {
         impl Words for $type {
             #[inline(always)]
             fn read(bytes: &[u8], at: usize) -> Self {
-                Self::from_le_bytes([bytes[at], bytes[at + 1], bytes[at + 2], bytes[at + 3]])
+                bytes[at..].first_chunk().copied().map(Self::from_le_bytes).unwrap_or_default()
             }
             #[inline(always)]
             fn write(&self, bytes: &mut [u8], at: usize) {
