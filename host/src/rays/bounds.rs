@@ -42,6 +42,13 @@ impl Bounds {
     /// Per axis, how far the farthest side is from `point`; at least 0.
     #[inline(always)]
     pub fn reach(&self, point: Vec3) -> Vec3 {
-        (self.max - point).max(point - self.min).max(Vec3::ZERO)
+        let reach = |min: f32, max: f32, at: f32| larger(larger(max - at, at - min), 0.0);
+        Vec3::new(reach(self.min.x, self.max.x, point.x), reach(self.min.y, self.max.y, point.y), reach(self.min.z, self.max.z, point.z))
     }
+}
+
+/// The larger of two numbers, one instruction where neither is NaN; b where one is.
+#[inline(always)]
+pub(super) fn larger(a: f32, b: f32) -> f32 {
+    if a > b { a } else { b }
 }

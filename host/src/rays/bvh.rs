@@ -16,7 +16,7 @@ use super::{
     nearest::{Key, Nearest},
     node::{Child, Leaf, Node, Slabs, WIDTH},
     primitives::PrimitiveId,
-    probe::Probe,
+    probe::{Probe, Shear},
     sphere::Sphere,
     surface::{SurfacePoint, rounding},
     triangle::{PACKET, Packet},
@@ -50,17 +50,41 @@ pub(super) struct Owned<T> {
     pub key: Key,
 }
 
-/// A subtree that waits for the ray, and where the ray enters it.
-type Waiting = (Child, f32);
+/// A subtree that waits for the ray: above its number where the ray enters it, never below 0, so that the nearer is less.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct Waiting(u64);
 
-const NONE: Waiting = (Child(0), 0.0);
+impl Waiting {
+    const NONE: Self = Self(0);
+
+    #[inline(always)]
+    fn new(child: Child, entry: f32) -> Self {
+        Self(u64::from(entry.to_bits()) << 32 | u64::from(child.0))
+    }
+
+    #[inline(always)]
+    fn child(self) -> Child {
+        Child(self.0 as u32)
+    }
+
+    #[inline(always)]
+    fn entry(self) -> f32 {
+        f32::from_bits((self.0 >> 32) as u32)
+    }
+
+    /// The nearer one and the other. No branch: which one it is cannot be foretold.
+    #[inline(always)]
+    fn sorted(self, other: Self) -> (Self, Self) {
+        (self.min(other), self.max(other))
+    }
+}
 
 /// As many subtrees as wait in all but degenerate trees.
 const STACK: usize = 512;
 
 thread_local! {
     /// Kept from ray to ray: clearing it would cost as much as a ray in a small tree.
-    static WAITING: RefCell<[Waiting; STACK]> = const { RefCell::new([NONE; STACK]) };
+    static WAITING: RefCell<[Waiting; STACK]> = const { RefCell::new([Waiting::NONE; STACK]) };
 }
 
 /// How rays meet triangles.
@@ -81,9 +105,11 @@ struct Descent<'a, const ANY: bool, const FAST: bool, const NESTED: bool> {
     bvh: &'a Bvh,
     probe: &'a Probe,
     root: Child,
-    nearest: Nearest,
+    /// Hits are nearer than this.
+    limit: f32,
     stack: &'a mut [Waiting],
-    trail: &'a mut Trail,
+    /// Empty unless `NESTED`.
+    trail: &'a mut [u32],
 }
 
 impl<const ANY: bool, const FAST: bool, const NESTED: bool> Work for Descent<'_, ANY, FAST, NESTED> {
@@ -91,36 +117,39 @@ impl<const ANY: bool, const FAST: bool, const NESTED: bool> Work for Descent<'_,
 
     #[inline(always)]
     fn run<L: Lanes>(self, lanes: L) -> Nearest {
-        let Self { bvh, probe, root, mut nearest, stack, trail } = self;
+        let Self { bvh, probe, root, limit, stack, trail } = self;
+        let mut nearest = Nearest::before(limit);
         let slabs = Slabs::new(lanes, probe);
-        let (mut current, mut entry) = (root, 0.0);
+        let shear = Shear::new(probe);
+        let mut current = Waiting::new(root, 0.0);
         let mut waiting = 0;
         loop {
-            let next = if current.is_leaf() {
-                match current.kind() {
-                    Leaf::Packet => bvh.meet_packet::<FAST>(current, probe, entry, &mut nearest),
-                    Leaf::Instance if NESTED => bvh.meet_instance::<ANY, FAST>(current, probe, &mut nearest, &mut stack[waiting..], trail),
-                    _ => bvh.meet_shape(current, probe, &mut nearest),
+            let child = current.child();
+            let next = if child.is_leaf() {
+                match child.kind() {
+                    Leaf::Packet => bvh.meet_packet::<FAST>(child, probe, &shear, current.entry(), &mut nearest),
+                    Leaf::Instance if NESTED => bvh.meet_instance::<ANY, FAST>(child, probe, &mut nearest, &mut stack[waiting..], trail),
+                    _ => bvh.meet_shape(child, probe, &mut nearest),
                 }
                 if ANY && nearest.found() {
                     return nearest;
                 }
                 None
             } else {
-                let node = &bvh.nodes[current.0 as usize];
-                let (mask, entries) = slabs.enter(node, nearest.t);
-                order(lanes, bvh, node, (mask, &entries), stack, &mut waiting)
+                let node = &bvh.nodes[child.index()];
+                let entered = slabs.enter(node, nearest.t);
+                bvh.next_child::<ANY, L>(lanes, node, entered, stack, &mut waiting)
             };
-            (current, entry) = match next {
-                Some(child) => child,
+            current = match next {
+                Some(next) => next,
                 None => loop {
                     if waiting == 0 {
                         return nearest;
                     }
                     waiting -= 1;
-                    let (child, entry) = stack[waiting];
-                    if entry <= nearest.t {
-                        break (child, entry);
+                    let next = stack[waiting];
+                    if ANY || next.entry() <= nearest.t {
+                        break next;
                     }
                 },
             };
@@ -131,14 +160,21 @@ impl<const ANY: bool, const FAST: bool, const NESTED: bool> Work for Descent<'_,
 impl Geometry for Bvh {
     #[inline]
     fn closest(&self, ray: &Ray) -> Option<RayHit> {
-        let (Nearest { t, key, slot, coordinates }, trail) = self.cast::<false>(ray)?;
-        let trail = if Child(slot).kind() == Leaf::Instance { self.trimmed(Child(slot), trail) } else { [0; LEVELS] };
+        let probe = &Probe::new(ray, &self.bounds, self.some_hidden)?;
+        let mut trail = [0; LEVELS];
+        let Nearest { mut t, key, slot, coordinates } = self.cast::<false>(probe, &mut trail)?;
+        if self.triangles == Triangles::Watertight {
+            t = self.exact_distance(probe, Child(slot), &trail).filter(|t| *t > 0.0 && *t < probe.limit).unwrap_or(t);
+        }
+        if Child(slot).kind() == Leaf::Instance {
+            trail = self.trimmed(Child(slot), trail);
+        }
         Some(RayHit { t, primitive: PrimitiveId(key.primitive()), coordinates, slot, trail })
     }
 
     #[inline]
     fn occluded(&self, ray: &Ray) -> bool {
-        self.cast::<true>(ray).is_some()
+        Probe::new(ray, &self.bounds, self.some_hidden).is_some_and(|probe| self.cast::<true>(&probe, &mut [0; LEVELS]).is_some())
     }
 
     fn path(&self, hit: &RayHit) -> impl Iterator<Item = PrimitiveId> {
@@ -272,23 +308,14 @@ impl Bvh {
         }
     }
 
-    /// The nearest hit, or with `ANY` whichever is found first.
+    /// The nearest hit, or with `ANY` whichever is found first; `trail` keeps where in an instance it is.
     #[inline(always)]
-    fn cast<const ANY: bool>(&self, ray: &Ray) -> Option<(Nearest, Trail)> {
-        let probe = &Probe::new(ray, &self.bounds, self.some_hidden)?;
-        let mut trail = [0; LEVELS];
-        let nearest = Nearest::before(probe.limit);
-        let nearest = if self.most_waiting <= STACK {
-            WAITING.with_borrow_mut(|stack| self.descend::<ANY>(probe, nearest, stack, &mut trail))
+    fn cast<const ANY: bool>(&self, probe: &Probe, trail: &mut Trail) -> Option<Nearest> {
+        if self.most_waiting <= STACK {
+            WAITING.with_borrow_mut(|stack| self.descend::<ANY>(probe, stack, trail))
         } else {
-            self.descend::<ANY>(probe, nearest, &mut vec![NONE; self.most_waiting], &mut trail)
-        };
-        let mut nearest = nearest?;
-        if !ANY && self.triangles == Triangles::Watertight {
-            nearest.t =
-                self.exact_distance(probe, Child(nearest.slot), &trail).filter(|t| *t > 0.0 && *t < probe.limit).unwrap_or(nearest.t);
+            self.descend::<ANY>(probe, &mut vec![Waiting::NONE; self.most_waiting], trail)
         }
-        Some((nearest, trail))
     }
 
     /// Without what other hits left behind the last step.
@@ -323,29 +350,29 @@ impl Bvh {
     }
 
     #[inline(always)]
-    fn descend<const ANY: bool>(&self, probe: &Probe, nearest: Nearest, stack: &mut [Waiting], trail: &mut Trail) -> Option<Nearest> {
+    fn descend<const ANY: bool>(&self, probe: &Probe, stack: &mut [Waiting], trail: &mut Trail) -> Option<Nearest> {
         match self.triangles {
-            Triangles::Watertight => self.search::<ANY, false>(self.machine, probe, nearest, stack, trail),
-            Triangles::Fast => self.search::<ANY, true>(self.machine, probe, nearest, stack, trail),
+            Triangles::Watertight => self.search::<ANY, false>(self.machine, probe, probe.limit, stack, trail),
+            Triangles::Fast => self.search::<ANY, true>(self.machine, probe, probe.limit, stack, trail),
         }
     }
 
-    /// Something nearer than `nearest`.
+    /// Something nearer than `limit`.
     #[inline(always)]
     fn search<const ANY: bool, const FAST: bool>(
         &self,
         machine: Machine,
         probe: &Probe,
-        nearest: Nearest,
+        limit: f32,
         stack: &mut [Waiting],
         trail: &mut Trail,
     ) -> Option<Nearest> {
         let machine = if probe.fusible { machine } else { Machine::Any };
         let (bvh, root) = (self, self.root?);
         let mut nearest = if self.levels == 0 {
-            machine.run(Descent::<ANY, FAST, false> { bvh, probe, root, nearest, stack, trail })
+            machine.run(Descent::<ANY, FAST, false> { bvh, probe, root, limit, stack, trail: &mut [] })
         } else {
-            machine.run(Descent::<ANY, FAST, true> { bvh, probe, root, nearest, stack, trail })
+            machine.run(Descent::<ANY, FAST, true> { bvh, probe, root, limit, stack, trail })
         };
         if !nearest.found() {
             return None;
@@ -367,10 +394,10 @@ impl Bvh {
 
     /// Offers what the ray hits of a packet.
     #[inline(always)]
-    fn meet_packet<const FAST: bool>(&self, leaf: Child, probe: &Probe, entry: f32, nearest: &mut Nearest) {
+    fn meet_packet<const FAST: bool>(&self, leaf: Child, probe: &Probe, shear: &Shear, entry: f32, nearest: &mut Nearest) {
         let slot = Child::leaf(Leaf::Packet, leaf.index() * PACKET);
         let packet = &self.packets[leaf.index()];
-        if FAST { packet.intersect_fast(probe, slot.0, nearest) } else { packet.intersect(probe, slot.0, entry, nearest) }
+        if FAST { packet.intersect_fast(probe, slot.0, nearest) } else { packet.intersect(probe, shear, slot.0, entry, nearest) }
     }
 
     /// Offers what the ray hits of any other shape.
@@ -405,7 +432,7 @@ impl Bvh {
         probe: &Probe,
         nearest: &mut Nearest,
         stack: &mut [Waiting],
-        trail: &mut Trail,
+        trail: &mut [u32],
     ) {
         let Owned { shape: instance, key } = &self.instances[leaf.index()];
         if probe.hide && key.hidden_from_lens() {
@@ -415,8 +442,7 @@ impl Bvh {
         // Of what lies equally near the lower primitive is nearer, so it has to be found.
         let limit = nearest.t.next_up().min(probe.limit);
         let mut inner_trail = [0; LEVELS];
-        let inner = Nearest::before(limit);
-        let found = instance.geometry().search::<ANY, FAST>(self.machine, &localized, inner, stack, &mut inner_trail);
+        let found = instance.geometry().search::<ANY, FAST>(self.machine, &localized, limit, stack, &mut inner_trail);
         if let Some(found) = found
             && nearest.loses_to(found.t, *key)
         {
@@ -425,44 +451,56 @@ impl Bvh {
             trail[1..].copy_from_slice(&inner_trail[..LEVELS - 1]);
         }
     }
+
+    /// The nearest of the children that the ray enters. The others wait, the nearer on top; for `ANY` hit just as they come.
+    #[inline(always)]
+    fn next_child<const ANY: bool, L: Lanes>(
+        &self,
+        lanes: L,
+        node: &Node,
+        (mask, entries): (u32, [f32; WIDTH]),
+        stack: &mut [Waiting],
+        waiting: &mut usize,
+    ) -> Option<Waiting> {
+        let mut entered = Entered(mask);
+        let take = |entered: &mut Entered| entered.next().map(|lane| Waiting::new(node.children[lane], entries[lane]));
+        let first = take(&mut entered)?;
+        let Some(second) = take(&mut entered) else { return Some(first) };
+        self.prefetch(lanes, first.child());
+        self.prefetch(lanes, second.child());
+        let floor = *waiting;
+        let (mut nearest, other) = first.sorted(second);
+        stack[floor] = other;
+        *waiting = floor + 1;
+        while let Some(one) = take(&mut entered) {
+            self.prefetch(lanes, one.child());
+            let (nearer, other) = one.sorted(nearest);
+            nearest = nearer;
+            let mut place = *waiting;
+            while !ANY && place > floor && stack[place - 1] < other {
+                stack[place] = stack[place - 1];
+                place -= 1;
+            }
+            stack[place] = other;
+            *waiting += 1;
+        }
+        Some(nearest)
+    }
 }
 
-/// The nearest of the children that the ray enters; the others wait, the nearer on top.
-#[inline(always)]
-fn order<L: Lanes>(
-    lanes: L,
-    bvh: &Bvh,
-    node: &Node,
-    (mut mask, entries): (u32, &[f32; WIDTH]),
-    stack: &mut [Waiting],
-    waiting: &mut usize,
-) -> Option<Waiting> {
-    if mask == 0 {
-        return None;
-    }
-    let lane = mask.trailing_zeros() as usize;
-    mask &= mask - 1;
-    let mut first = (node.children[lane], entries[lane]);
-    if mask == 0 {
-        return Some(first);
-    }
-    bvh.prefetch(lanes, first.0);
-    let floor = *waiting;
-    while mask != 0 {
-        let lane = mask.trailing_zeros() as usize;
-        mask &= mask - 1;
-        let mut one = (node.children[lane], entries[lane]);
-        bvh.prefetch(lanes, one.0);
-        if one.1 < first.1 {
-            std::mem::swap(&mut one, &mut first);
+/// Lanes by their bits, from the lowest up.
+struct Entered(u32);
+
+impl Iterator for Entered {
+    type Item = usize;
+
+    #[inline(always)]
+    fn next(&mut self) -> Option<usize> {
+        let lane = self.0.trailing_zeros() as usize;
+        if self.0 == 0 {
+            return None;
         }
-        let mut place = *waiting;
-        while place > floor && stack[place - 1].1 < one.1 {
-            stack[place] = stack[place - 1];
-            place -= 1;
-        }
-        stack[place] = one;
-        *waiting += 1;
+        self.0 &= self.0 - 1;
+        Some(lane % WIDTH)
     }
-    Some(first)
 }

@@ -4,7 +4,7 @@ use bidir_kernel::{Ray, Segment, Vec3};
 use glam::DVec3;
 use wide::f32x4;
 
-use super::bounds::Bounds;
+use super::bounds::{Bounds, larger};
 
 /// Half the distance from 1 to the next number: the relative error of one rounding.
 const U: f32 = f32::EPSILON / 2.0;
@@ -35,15 +35,6 @@ pub(super) struct Probe {
     pub near_origin: [f32; 3],
     pub far_origin: [f32; 3],
     pub inverse: [f32; 3],
-
-    /// The axes permuted so that the direction's largest component comes last.
-    pub axes: [usize; 3],
-    /// The origin in permuted axes.
-    pub apex: [f32x4; 3],
-    /// d_x / d_z, d_y / d_z and 1 / d_z in permuted axes: x − shear·z turns the ray into the z axis.
-    pub shear: [f32x4; 3],
-    /// |d_z| in permuted axes.
-    pub depth: f32x4,
 }
 
 impl Probe {
@@ -58,28 +49,18 @@ impl Probe {
     pub fn within(o: Vec3, d: Vec3, limit: f32, lens: bool, bounds: &Bounds, some_hidden: bool) -> Option<Self> {
         // Each product is 0, or NaN where its factor is not finite.
         let finite = (o.x * 0.0 + o.y * 0.0 + o.z * 0.0) + (d.x * 0.0 + d.y * 0.0 + d.z * 0.0) == 0.0;
-        let [x, y, z] = [d.x.abs(), d.y.abs(), d.z.abs()];
-        let last = if x > y {
-            if x > z { 0 } else { 2 }
-        } else if y > z {
-            1
-        } else {
-            2
-        };
-        let largest = x.max(y).max(z);
+        let largest = larger(larger(d.x.abs(), d.y.abs()), d.z.abs());
         if !(finite && largest >= f32::MIN_POSITIVE && limit > 0.0) {
             return None;
         }
 
         let reach = bounds.reach(o);
-        let slack = SLACK * reach.x.max(reach.y).max(reach.z);
+        let slack = SLACK * larger(larger(reach.x, reach.y), reach.z);
         if !slack.is_finite() {
             return None;
         }
-        let inverse = [inverse(d.x), inverse(d.y), inverse(d.z)];
         let (origin, direction) = (o, d);
         let (o, d) = (o.to_array(), d.to_array());
-        let axes = [[1, 2, 0], [2, 0, 1], [0, 1, 2]][last];
         let mut probe = Self {
             origin,
             direction,
@@ -90,16 +71,12 @@ impl Probe {
             backwards: d.map(f32::is_sign_negative),
             near_origin: [0.0; 3],
             far_origin: [0.0; 3],
-            inverse,
-            axes,
-            apex: axes.map(|axis| f32x4::splat(o[axis])),
-            shear: [d[axes[0]] * inverse[last], d[axes[1]] * inverse[last], inverse[last]].map(f32x4::splat),
-            depth: f32x4::splat(largest),
+            inverse: d.map(|d| (1.0 / d).clamp(-FLAT, FLAT)),
         };
         for (axis, origin) in o.into_iter().enumerate() {
             // Always more than half a step of the origin, or adding it would do nothing; and two roundings of origin · inverse.
             let wide = slack + 4.0 * U * origin.abs();
-            let out = if probe.backwards[axis] { -wide } else { wide };
+            let out = wide.copysign(d[axis]);
             probe.near_origin[axis] = origin + out;
             probe.far_origin[axis] = origin - out;
             // Where origin · inverse has no finite value, boxes are tested by (plane − origin) · inverse.
@@ -116,9 +93,33 @@ impl Probe {
     }
 }
 
-/// 1/d, finite also for d = 0.
-#[inline(always)]
-fn inverse(d: f32) -> f32 {
-    let inverse = 1.0 / d;
-    if inverse.abs() <= FLAT { inverse } else { FLAT.copysign(d) }
+/// What of a ray meets triangles without leaks: a shear that turns the ray into the z axis, once axes are permuted so that the
+/// direction's largest component comes last.
+pub(super) struct Shear {
+    pub axes: [usize; 3],
+    /// The origin in permuted axes.
+    pub apex: [f32x4; 3],
+    /// d_x / d_z, d_y / d_z and 1 / d_z in permuted axes: x − shear·z turns the ray into the z axis.
+    pub shear: [f32x4; 3],
+    /// |d_z| in permuted axes.
+    pub depth: f32x4,
+}
+
+impl Shear {
+    #[inline(always)]
+    pub fn new(probe: &Probe) -> Self {
+        let (o, d) = (probe.origin.to_array(), probe.direction.to_array());
+        let [x, y, z] = d.map(f32::abs);
+        let (of_two, longer) = if x > y { (0, x) } else { (1, y) };
+        let (last, largest) = if longer > z { (of_two, longer) } else { (2, z) };
+        let after = |axis: usize| if axis == 2 { 0 } else { axis + 1 };
+        let axes = [after(last), after(after(last)), last];
+        let inverse = probe.inverse[last];
+        Self {
+            axes,
+            apex: axes.map(|axis| f32x4::splat(o[axis])),
+            shear: [d[axes[0]] * inverse, d[axes[1]] * inverse, inverse].map(f32x4::splat),
+            depth: f32x4::splat(largest),
+        }
+    }
 }

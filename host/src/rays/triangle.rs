@@ -10,7 +10,7 @@ use wide::f32x4;
 
 use super::{
     nearest::{Key, Nearest},
-    probe::Probe,
+    probe::{Probe, Shear},
 };
 
 /// Three corners in the world; the normal is (b − a) × (c − a).
@@ -51,12 +51,12 @@ impl Packet {
 
     /// Offers what the ray hits here. `slot` is that of the first lane; `entry` is where the ray enters the box of all lanes.
     #[inline(always)]
-    pub fn intersect(&self, probe: &Probe, slot: u32, entry: f32, nearest: &mut Nearest) {
-        let [x, y, z] = probe.axes;
-        let [shear_x, shear_y, scale_z] = probe.shear;
+    pub fn intersect(&self, probe: &Probe, shear: &Shear, slot: u32, entry: f32, nearest: &mut Nearest) {
+        let [x, y, z] = shear.axes;
+        let [shear_x, shear_y, scale_z] = shear.shear;
         let sheared = |corner: &[f32x4; 3]| {
-            let depth = corner[z] - probe.apex[2];
-            (corner[x] - probe.apex[0] - shear_x * depth, corner[y] - probe.apex[1] - shear_y * depth, depth)
+            let depth = corner[z] - shear.apex[2];
+            (corner[x] - shear.apex[0] - shear_x * depth, corner[y] - shear.apex[1] - shear_y * depth, depth)
         };
         let (ax, ay, az) = sheared(&self.corners[0]);
         let (bx, by, bz) = sheared(&self.corners[1]);
@@ -88,7 +88,7 @@ impl Packet {
             return;
         }
 
-        let error = distance_error(probe, [ax, bx, cx], [ay, by, cy], [az, bz, cz], [u, v, w], per_area);
+        let error = distance_error(shear.depth, [ax, bx, cx], [ay, by, cy], [az, bz, cz], [u, v, w], per_area);
         let unsure = t.simd_le(error) | (t - f32x4::splat(probe.limit)).abs().simd_le(error) | t.simd_lt(f32x4::splat(entry));
         let unsure = unsure.to_bitmask();
         let (t, v, w) = (t.to_array(), (v * per_area).to_array(), (w * per_area).to_array());
@@ -168,10 +168,10 @@ fn exact_edges(sheared: [f32x4; 6]) -> [f32x4; 3] {
 
 /// A bound on the rounding error of t (Pharr, Jakob and Humphreys 2016, §3.9.6), in units of the direction's length.
 #[inline(always)]
-fn distance_error(probe: &Probe, x: [f32x4; 3], y: [f32x4; 3], z: [f32x4; 3], edges: [f32x4; 3], per_area: f32x4) -> f32x4 {
+fn distance_error(depth: f32x4, x: [f32x4; 3], y: [f32x4; 3], z: [f32x4; 3], edges: [f32x4; 3], per_area: f32x4) -> f32x4 {
     let largest = |[a, b, c]: [f32x4; 3]| a.abs().fast_max(b.abs()).fast_max(c.abs());
     let (x, y, z, edge) = (largest(x), largest(y), largest(z), largest(edges));
-    let depth = z * probe.depth;
+    let depth = z * depth;
     let error_x = f32x4::splat(gamma(5)) * (x + depth);
     let error_y = f32x4::splat(gamma(5)) * (y + depth);
     let error_edge = f32x4::splat(2.0) * (f32x4::splat(gamma(2)) * x * y + error_y * x + error_x * y);
