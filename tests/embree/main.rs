@@ -65,7 +65,7 @@ fn compare(embree: &Embree, name: &str, mesh: &Mesh, [eye, target]: [Vec3; 2], s
     });
     let fast = ours.clone().with_triangles(Triangles::Fast);
     let stats = ours.stats();
-    println!("\n{name}, {} triangles; {:.0} bytes each", mesh.triangles.len(), stats.bytes as f64 / stats.primitives as f64);
+    println!("\n{name}, {} triangles; {:.1} bytes each", mesh.triangles.len(), stats.bytes as f64 / stats.primitives as f64);
     println!("build {build:.2} s ({:.2} s of wall clock); Embree's {:.2} s robust, {:.2} s fast", stats.seconds, theirs[0].1, theirs[1].1);
     println!("{:<16}{:>11}{:>9}{:>8}{:>11}{:>9}{:>8}", "ns per ray", "watertight", "robust", "ratio", "ours, fast", "fast", "ratio");
     let bounce = |ray: &Ray| {

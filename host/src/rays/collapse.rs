@@ -9,7 +9,7 @@ use super::{node::WIDTH, triangle::PACKET};
 
 /// What visiting a node, a packet and any other primitive cost, relative to each other.
 const NODE_COST: f32 = 1.0;
-const PACKET_COST: f32 = 1.0;
+const PACKET_COST: f32 = 0.7;
 const OTHER_COST: f32 = 1.0;
 
 /// How a subtree is best cut.
