@@ -11,7 +11,12 @@ use std::{
 use serde::Serialize;
 
 use crate::{
-    cli::{Outcome, arguments::Explain, render::read},
+    cli::{
+        Outcome,
+        arguments::Explain,
+        progress::{Stages, Verbosity},
+        render::read,
+    },
     error::{Error, Result},
     plan::{
         Named, Plan,
@@ -44,7 +49,7 @@ pub(super) fn run(arguments: &Explain) -> Result<Outcome> {
         let words = if arguments.json { json(&catalog::by_tag())? } else { catalog::list() };
         return Ok(say(&words));
     };
-    let description = read(Some(path), &arguments.from)?;
+    let description = read(Some(path), &arguments.from, &mut Stages::new(Verbosity::Quiet))?;
     let scene = Scene::new(&description)?;
     let report = Report::new(path.clone(), &description, &scene);
     Ok(say(&if arguments.json { json(&report)? } else { text::of(&report) }))
