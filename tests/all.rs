@@ -16,5 +16,6 @@ mod random;
 mod references;
 mod sandbox;
 mod scenes;
+mod self_hits;
 mod statistics;
 mod techniques;
