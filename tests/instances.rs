@@ -73,9 +73,14 @@ const MIRRORED: &str = r#"<scale value="-1.4, 0.5, 0.9"/><matrix value="1 0.6 0 
 
 /// The same shape, once in an instance and once written out.
 fn both(kind: &str, content: &str, transform: &str) -> [Subject; 2] {
+    both_by_way_of(["", ""], kind, content, transform)
+}
+
+/// The same; `there` is how the group's coordinates begin, and `back` undoes it.
+fn both_by_way_of([there, back]: [&str; 2], kind: &str, content: &str, transform: &str) -> [Subject; 2] {
     let folder = folder_with_ball();
     let content = content.to_owned() + BRUSHED;
-    let instanced = group("g", &shape(kind, WITHIN, &content)) + &instance("g", transform);
+    let instanced = group("g", &shape(kind, &format!("{WITHIN}{there}"), &content)) + &instance("g", &format!("{back}{transform}"));
     let flat = shape(kind, &format!("{WITHIN}{transform}"), &content);
     [instanced, flat].map(|shapes| read_beside(&(pinhole() + &shapes), Some(folder.path())))
 }
@@ -161,6 +166,14 @@ fn every_shape_in_an_instance_is_the_shape_written_out() {
         let hits = compare(&both(kind, "", transform));
         assert!(hits > 1_000, "{kind}: {hits}");
     }
+}
+
+/// In f32, a million sizes away, there would be nothing left of the mesh's triangles.
+#[test]
+fn a_group_far_from_where_its_coordinates_begin_loses_nothing() {
+    let there_and_back = [r#"<translate value="1e6, -2e6, 3e6"/>"#, r#"<translate value="-1e6, 2e6, -3e6"/>"#];
+    let hits = compare(&both_by_way_of(there_and_back, "obj", BALL, SKEWED));
+    assert!(hits > 10_000, "{hits}");
 }
 
 /// A sphere cannot be scaled unequally when it is written out; in an instance it is an ellipsoid, (x/2)² + (2y)² + z² = 1.

@@ -195,6 +195,17 @@ mod tests {
     }
 
     #[test]
+    fn groups_are_counted_once_and_written_out() {
+        let group = r#"<shape type="shapegroup" id="g"><shape type="cube"/><shape type="disk"/></shape>
+            <shape type="shapegroup" id="h"><shape type="instance"><ref id="g"/></shape><shape type="sphere"/></shape>"#;
+        let report = report(&format!("{group}{}<shape type=\"disk\"/>", r#"<shape type="instance"><ref id="h"/></shape>"#.repeat(3)));
+        assert_eq!(report.contents.primitives, 12 + 1 + 1 + 1);
+        let words = text::of(&report);
+        assert!(words.contains("1 mesh (12 triangles), 2 disks, 1 sphere"), "{words}");
+        assert!(words.contains("2 groups of 3 shapes, 4 instances; written out, 10 shapes"), "{words}");
+    }
+
+    #[test]
     fn an_empty_scene_has_a_report_too() {
         let report = report("");
         assert!(report.missing.is_empty());
