@@ -11,7 +11,12 @@ use std::{
 use serde::Serialize;
 
 use crate::{
-    cli::{Outcome, arguments::Explain, render::read},
+    cli::{
+        Outcome,
+        arguments::Explain,
+        progress::{Stages, Verbosity},
+        render::read,
+    },
     error::{Error, Result},
     plan::{
         Named, Plan,
@@ -44,7 +49,7 @@ pub(super) fn run(arguments: &Explain) -> Result<Outcome> {
         let words = if arguments.json { json(&catalog::by_tag())? } else { catalog::list() };
         return Ok(say(&words));
     };
-    let description = read(Some(path), &arguments.from)?;
+    let description = read(Some(path), &arguments.from, &mut Stages::new(Verbosity::Quiet))?;
     let scene = Scene::new(&description)?;
     let report = Report::new(path.clone(), &description, &scene);
     Ok(say(&if arguments.json { json(&report)? } else { text::of(&report) }))
@@ -187,6 +192,17 @@ mod tests {
         assert_eq!(Plan::read(file.path()).unwrap(), Named::Auto.plan());
         assert_eq!(value["techniques"][4]["state"], "impossible");
         assert_eq!(value["techniques"][4]["join"], "lens_hit");
+    }
+
+    #[test]
+    fn groups_are_counted_once_and_written_out() {
+        let group = r#"<shape type="shapegroup" id="g"><shape type="cube"/><shape type="disk"/></shape>
+            <shape type="shapegroup" id="h"><shape type="instance"><ref id="g"/></shape><shape type="sphere"/></shape>"#;
+        let report = report(&format!("{group}{}<shape type=\"disk\"/>", r#"<shape type="instance"><ref id="h"/></shape>"#.repeat(3)));
+        assert_eq!(report.contents.primitives, 12 + 1 + 1 + 1);
+        let words = text::of(&report);
+        assert!(words.contains("1 mesh (12 triangles), 2 disks, 1 sphere"), "{words}");
+        assert!(words.contains("2 groups of 3 shapes, 4 instances; written out, 10 shapes"), "{words}");
     }
 
     #[test]

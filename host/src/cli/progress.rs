@@ -5,6 +5,10 @@ use std::{
     time::Duration,
 };
 
+mod stages;
+
+pub use stages::Stages;
+
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 /// Where nobody watches, a line at least this often.

@@ -10,7 +10,7 @@ use crate::{
         Outcome,
         arguments::{Render, SceneArguments},
         interrupt,
-        progress::{Goal, Progress, Verbosity},
+        progress::{Goal, Progress, Stages, Verbosity},
         stats::{self, CpuSeconds, Geometry, Seconds, Stats},
     },
     error::{Error, Result},
@@ -25,17 +25,20 @@ use crate::{
 
 /// The scene of a `render` without one.
 const WELCOME: &str = include_str!("../../../examples/scenes/welcome.xml");
+const WELCOME_NAME: &str = "welcome.xml";
 
 /// Reads a scene, or the one that comes with the program, and says on standard error what the user should know of it.
-pub(super) fn read(scene: Option<&Path>, from: &SceneArguments) -> Result<Description> {
+pub(super) fn read(scene: Option<&Path>, from: &SceneArguments, stages: &mut Stages) -> Result<Description> {
     if let Some(folder) = from.plugins.iter().find(|folder| !folder.is_dir()) {
         return Err(Error::in_file(folder, "there is no such folder", "name a folder of plugins"));
     }
+    stages.loading(scene.unwrap_or(Path::new(WELCOME_NAME)));
     let library = Library::with_environment(from.plugins.clone());
     let loaded = match scene {
         Some(path) => load::load(path, &from.defines, &library)?,
-        None => load::load_str(WELCOME, Path::new("welcome.xml"), None, &from.defines, &library)?,
+        None => load::load_str(WELCOME, Path::new(WELCOME_NAME), None, &from.defines, &library)?,
     };
+    stages.loaded();
     for warning in &loaded.warnings {
         eprintln!("warning: {warning}");
     }
@@ -97,13 +100,16 @@ pub(super) fn run(arguments: &Render) -> Result<Outcome> {
     };
     seconds.plan = planning.elapsed().as_secs_f64();
 
+    let mut stages = Stages::new(verbosity(arguments.quiet));
     let loading = Instant::now();
-    let description = read(arguments.scene.as_deref(), &arguments.from)?;
+    let description = read(arguments.scene.as_deref(), &arguments.from, &mut stages)?;
     seconds.load = loading.elapsed().as_secs_f64();
     let building = Instant::now();
+    stages.building(&description);
     let film = Film::new(&description.film)?;
     let scene = Scene::new(&description)?;
     seconds.build = building.elapsed().as_secs_f64();
+    stages.built();
     if scene.degenerate() > 0 {
         eprintln!("warning: {} shapes or triangles without area were dropped", scene.degenerate());
     }
@@ -157,7 +163,12 @@ fn progress(target: Target, quiet: bool) -> Progress {
         Target::Time(time) => Goal::Time(time),
         Target::Error(error) => Goal::Error(error),
     };
-    Progress::new(goal, if quiet { Verbosity::Quiet } else { Verbosity::Shown })
+    Progress::new(goal, verbosity(quiet))
+}
+
+/// What `--quiet` means.
+pub(super) fn verbosity(quiet: bool) -> Verbosity {
+    if quiet { Verbosity::Quiet } else { Verbosity::Shown }
 }
 
 fn save(output: &Path, film: &Film, light_walks: f64, status: &Status, seed: u64) -> Result<()> {
@@ -185,7 +196,6 @@ fn statistics(
 ) -> Stats {
     let crop = description.film.crop;
     let camera_paths = u64::from(status.samples) * u64::from(crop.width) * u64::from(crop.height);
-    let tree = scene.build_stats();
     Stats {
         spp: status.samples,
         width: crop.width,
@@ -203,7 +213,7 @@ fn statistics(
         threads: job.threads,
         seed: job.seed,
         sampler: job.numbers,
-        geometry: Geometry { primitives: tree.primitives, degenerate: scene.degenerate(), bytes: tree.bytes },
+        geometry: Geometry::of(scene),
         version: env!("CARGO_PKG_VERSION"),
         interrupted: status.interrupted,
     }

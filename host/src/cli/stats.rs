@@ -8,8 +8,9 @@ use crate::{
     error::{Error, Result},
     partial::Partial,
     plan::Plan,
+    rays::BuildStats,
     render::Numbers,
-    scene::view::RayCounts,
+    scene::{Scene, view::RayCounts},
 };
 
 /// What was done and what it took.
@@ -47,7 +48,7 @@ pub struct Stats {
     pub seed: u64,
     /// Which random numbers.
     pub sampler: Numbers,
-    /// The ray caster's tree.
+    /// The ray caster's trees.
     pub geometry: Geometry,
     /// Of this program.
     pub version: &'static str,
@@ -77,15 +78,36 @@ pub struct CpuSeconds {
     pub render: f64,
 }
 
-/// The ray caster's tree.
+/// The ray caster's trees, each group's counted once.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 pub struct Geometry {
     /// Triangles and other shapes.
     pub primitives: usize,
-    /// Those without area, dropped.
+    /// Triangles among them, and two for each rectangle.
+    pub triangles: usize,
+    /// Where groups stand.
+    pub instances: usize,
+    /// Shapes and triangles without area, dropped.
     pub degenerate: usize,
-    /// Memory of the tree.
+    /// Memory of the trees, and of what tells whose a primitive is; without the meshes' own vertices and indices.
     pub bytes: usize,
+    /// The same for each triangle; what other shapes and instances take is not told apart.
+    pub bytes_per_triangle: Option<f64>,
+}
+
+impl Geometry {
+    /// Of a scene.
+    pub fn of(scene: &Scene) -> Self {
+        let BuildStats { primitives, triangles, instances, bytes, .. } = scene.build_stats();
+        Self {
+            primitives: primitives - instances,
+            triangles,
+            instances,
+            degenerate: scene.degenerate(),
+            bytes,
+            bytes_per_triangle: (triangles > 0).then(|| bytes as f64 / triangles as f64),
+        }
+    }
 }
 
 /// What is being written, for messages.

@@ -11,8 +11,8 @@ use crate::{
         Outcome,
         arguments::Techniques,
         interrupt,
-        progress::{Goal, Progress, Verbosity},
-        render::{conclude, read, strictness, thread_count},
+        progress::{Goal, Progress, Stages},
+        render::{conclude, read, strictness, thread_count, verbosity},
     },
     error::{Error, Result},
     film::Pyramid,
@@ -24,14 +24,17 @@ use crate::{
 use save::{Index, KINDS};
 
 pub(super) fn run(arguments: &Techniques) -> Result<Outcome> {
-    let mut description = read(Some(&arguments.scene), &arguments.from)?;
+    let mut stages = Stages::new(verbosity(arguments.quiet));
+    let mut description = read(Some(&arguments.scene), &arguments.from, &mut stages)?;
     let longest = limit(&mut description, arguments.longest);
     if longest == 0 {
         return Err(Error::in_file(&arguments.scene, "max_depth is 0, so there are no paths to show", "give --max-depth 1 or more"));
     }
     let pyramid = Pyramid::new(&description.film, longest)?;
     prepare(&arguments.output)?;
+    stages.building(&description);
     let scene = Scene::new(&description)?;
+    stages.built();
     if scene.degenerate() > 0 {
         eprintln!("warning: {} shapes or triangles without area were dropped", scene.degenerate());
     }
@@ -83,8 +86,7 @@ fn limit(description: &mut Description, longest: u32) -> u32 {
 }
 
 fn expose(scene: &Scene, pyramid: &Pyramid, job: &Job, arguments: &Techniques) -> Status {
-    let verbosity = if arguments.quiet { Verbosity::Quiet } else { Verbosity::Shown };
-    let mut progress = Progress::new(Goal::Samples(arguments.spp), verbosity);
+    let mut progress = Progress::new(Goal::Samples(arguments.spp), verbosity(arguments.quiet));
     let status = render::render(scene, pyramid, job, &interrupt::flag(), |status| {
         progress.update(status.samples, status.elapsed, None);
         None

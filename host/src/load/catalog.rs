@@ -34,7 +34,7 @@ const SUPPORTED: &[(&str, &[&str])] = &[
     ("rfilter", &["gaussian", "box", "tent"]),
     ("bsdf", &["diffuse", "conductor", "roughconductor", "dielectric", "thindielectric", "roughdielectric", "plastic", "twosided", "null"]),
     ("texture", &["bitmap", "checkerboard"]),
-    ("shape", &["rectangle", "disk", "sphere", "cube", "cylinder", "obj", "ply"]),
+    ("shape", &["rectangle", "disk", "sphere", "cube", "cylinder", "obj", "ply", "shapegroup", "instance"]),
     ("emitter", &["area", "point", "spot", "directional", "constant", "envmap"]),
 ];
 
@@ -52,7 +52,7 @@ const UNSUPPORTED: &[Unsupported] = &[
     ("bsdf", &["circular", "linear_polarizer", "polarizer", "retarder"], "light is not polarized here; use null"),
     ("texture", &["mesh_attribute", "volume", "area_attribute"], "use bitmap"),
     ("shape", &["serialized", "blender"], "save it as ply or obj"),
-    ("shape", &["instance", "shapegroup", "merge"], "write the shapes out one by one; files named twice are kept once"),
+    ("shape", &["merge"], "write the shapes out one by one, or put them into a shapegroup and show it by an instance"),
     ("shape", &["bsplinecurve", "linearcurve", "sdfgrid", "ellipsoids", "ellipsoidsmesh"], "save it as a mesh in ply or obj"),
     ("shape", &["heightfield"], "save it as a mesh in ply or obj"),
     ("emitter", &["sunsky", "sun", "sky", "timed_sunsky"], "bake it into an image for envmap"),

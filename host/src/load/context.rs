@@ -6,11 +6,11 @@ use std::{
     sync::Arc,
 };
 
-use super::{ids::Ids, properties::line, xml, xml::Element};
+use super::{group::Known, ids::Ids, properties::line, xml, xml::Element};
 use crate::{
     error::{Error, Place, Result},
     plugin::Library,
-    scene::description::{Bitmap, EnvironmentImage, Material, MaterialId, Mesh},
+    scene::description::{Bitmap, EnvironmentImage, Group, Material, MaterialId, Mesh},
 };
 
 /// A scene half read.
@@ -21,6 +21,11 @@ pub(super) struct Context<'s> {
     pub(super) materials: Vec<Material>,
     /// By the serial of the element; `None` while the material is being read.
     pub(super) material_ids: HashMap<u32, Option<MaterialId>>,
+    pub(super) groups: Vec<Arc<Group>>,
+    /// By the serial of the element; `None` while the group is being read.
+    pub(super) groups_read: HashMap<u32, Option<Known>>,
+    /// How many groups are being read, each inside the one before.
+    pub(super) groups_open: usize,
     pub(super) default_material: Option<MaterialId>,
     /// By the file and everything that changes what is read from it.
     pub(super) bitmaps: HashMap<String, Arc<Bitmap>>,
@@ -40,6 +45,9 @@ impl<'s> Context<'s> {
             warnings: Vec::new(),
             materials: Vec::new(),
             material_ids: HashMap::new(),
+            groups: Vec::new(),
+            groups_read: HashMap::new(),
+            groups_open: 0,
             default_material: None,
             bitmaps: HashMap::new(),
             environments: HashMap::new(),

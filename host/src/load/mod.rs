@@ -8,6 +8,7 @@ mod context;
 mod defines;
 mod emitter;
 mod film;
+mod group;
 mod ids;
 mod integrator;
 mod ior;
@@ -28,7 +29,7 @@ use self::{context::Context, ids::Ids, properties::Properties};
 use crate::{
     error::{Error, Result},
     plugin::Library,
-    scene::description::{Description, Emitter, Integrator},
+    scene::description::{Description, Emitter, Instance, Integrator},
 };
 
 /// A scene, and what the user should know about it.
@@ -78,7 +79,8 @@ pub fn load_str(text: &str, name: &Path, base_dir: Option<&Path>, defines: &[(St
     for element in scene.objects("texture") {
         texture::texture(&mut context, element, texture::Range::NOT_NEGATIVE, &element.place)?;
     }
-    let shapes = scene.objects("shape").into_iter().map(|element| shape::shape(&mut context, element)).collect::<Result<_>>()?;
+    let (shapes, instances) = group::shapes(&mut context, &scene.objects("shape"), group::Whole::Scene)?;
+    warn_of_unused_groups(&mut context, &instances);
     let emitters = emitters(&mut context, &scene)?;
     for tag in ["medium", "volume", "phase", "film", "sampler", "rfilter"] {
         if let Some(element) = scene.objects(tag).first() {
@@ -96,9 +98,23 @@ pub fn load_str(text: &str, name: &Path, base_dir: Option<&Path>, defines: &[(St
         seed: equipment.seed,
         materials: context.materials,
         shapes,
+        groups: context.groups,
+        instances,
         emitters,
     };
     Ok(Loaded { description, warnings: context.warnings })
+}
+
+fn warn_of_unused_groups(context: &mut Context, instances: &[Instance]) {
+    let mut shown = vec![false; context.groups.len()];
+    let inner = context.groups.iter().flat_map(|group| &group.instances);
+    for instance in instances.iter().chain(inner) {
+        shown[instance.group.0 as usize] = true;
+    }
+    let unused: Vec<_> = context.groups.iter().zip(shown).filter(|(_, shown)| !shown).map(|(group, _)| group.place.clone()).collect();
+    for place in unused {
+        context.warn(&place, "no instance shows this group");
+    }
 }
 
 fn emitters(context: &mut Context, scene: &Properties) -> Result<Vec<Emitter>> {

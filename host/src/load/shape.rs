@@ -8,8 +8,20 @@ use crate::{
     scene::description::{Geometry, Shape},
 };
 
+/// Whether a shape may shine.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Light {
+    Allowed,
+    Refused,
+}
+
+/// What a group holds cannot shine.
+pub(super) fn no_light(emitter: &Element) -> Error {
+    Error::at(&emitter.place, "an emitter stands inside a group or an instance", "take it out, or put its shape beside the group")
+}
+
 /// The shape that an element describes.
-pub(super) fn shape(context: &mut Context, element: &Element) -> Result<Shape> {
+pub(super) fn shape(context: &mut Context, element: &Element, light: Light) -> Result<Shape> {
     let of = Properties::read(element, &context.ids)?;
     catalog::check("shape", of.kind(), &element.place)?;
     let geometry = geometry(context, &of)?;
@@ -25,6 +37,7 @@ pub(super) fn shape(context: &mut Context, element: &Element) -> Result<Shape> {
         None => bsdf::default(context),
     };
     let light = match of.object("emitter")? {
+        Some(emitter) if light == Light::Refused => return Err(no_light(emitter)),
         Some(light) => Some(emitter::area(context, light, &element.place)?),
         None => None,
     };

@@ -225,6 +225,82 @@ fn shapes_that_a_transform_would_break_are_refused() {
     scene(&format!("<shape type=\"cylinder\">{}</shape>", transform("<scale value=\"2 2 5\"/><rotate y=\"1\" angle=\"33\"/>")));
 }
 
+const GROUP: &str = "<shape type=\"shapegroup\" id=\"g\"><shape type=\"cube\"/><shape type=\"disk\"/></shape>";
+
+#[test]
+fn a_group_is_read_once_however_many_instances_there_are() {
+    let moved = "<shape type=\"instance\"><ref id=\"g\"/><transform name=\"to_world\"><translate x=\"2\"/></transform></shape>";
+    let scene = scene(&format!("{moved}{GROUP}<shape type=\"instance\"><ref id=\"g\"/></shape><shape type=\"sphere\"/>"));
+    assert_eq!((scene.shapes.len(), scene.groups.len(), scene.instances.len()), (1, 1, 2));
+    assert_eq!(scene.groups[0].shapes.len(), 2);
+    assert!(scene.instances.iter().all(|instance| instance.group.0 == 0));
+    assert_eq!(scene.instances[0].to_world.translation, DVec3::new(2.0, 0.0, 0.0));
+}
+
+#[test]
+fn a_group_that_holds_another_comes_after_it() {
+    let outer = "<shape type=\"shapegroup\" id=\"h\"><shape type=\"instance\"><ref id=\"g\"/></shape></shape>";
+    let scene = scene(&format!("{outer}{GROUP}<shape type=\"instance\"><ref id=\"h\"/></shape>"));
+    assert_eq!((scene.groups[0].shapes.len(), scene.groups[1].instances.len()), (2, 1));
+    assert_eq!((scene.groups[1].instances[0].group.0, scene.instances[0].group.0), (0, 1));
+}
+
+#[test]
+fn a_group_without_an_instance_is_told_and_not_shown() {
+    let loaded = read(&format!("{SENSOR}{GROUP}")).unwrap();
+    assert!(loaded.description.shapes.is_empty() && loaded.description.instances.is_empty());
+    assert_eq!(loaded.warnings.len(), 1);
+    assert!(loaded.warnings[0].ends_with("no instance shows this group"), "{}", loaded.warnings[0]);
+}
+
+#[test]
+fn groups_and_instances_that_make_no_sense_are_refused_where_they_stand() {
+    let group = |content: &str| format!("<shape type=\"shapegroup\" id=\"h\">{content}</shape>{GROUP}");
+    let instance = |content: &str| format!("{GROUP}<shape type=\"instance\">{content}</shape>");
+    let transform = |step: &str| format!("<ref id=\"g\"/><transform name=\"to_world\">{step}</transform>");
+    for (content, thing) in [
+        (group("<shape type=\"disk\"><emitter type=\"area\"/></shape>"), "an emitter stands inside a group or an instance; take it out"),
+        (group("<emitter type=\"point\"/>"), "an emitter stands inside a group or an instance; take it out"),
+        (instance("<ref id=\"g\"/><emitter type=\"area\"/>"), "an emitter stands inside a group or an instance; take it out"),
+        (instance("<ref id=\"g\"/><bsdf type=\"null\"/>"), "no material of its own; its shapes keep their own"),
+        (group("<shape type=\"shapegroup\"><shape type=\"disk\"/></shape>"), "a group stands directly inside another; put its shapes here"),
+        (group(""), "the group holds no shape; put one into it"),
+        (group("<shape type=\"disk\"/><transform name=\"to_world\"/>"), "is not supported; give it to the shapes inside"),
+        (group("<shape type=\"disk\"/><bsdf type=\"null\"/>"), "a <bsdf> means nothing inside shape \"shapegroup\""),
+        (group("<shape type=\"instance\"><ref id=\"h\"/></shape>"), "the group on line 1 holds itself; take one"),
+        (instance("<ref id=\"k\"/>"), "nothing in the scene has the id \"k\""),
+        (instance(""), "the instance is of no group; write <ref"),
+        (instance("<shape type=\"disk\"/>"), "the instance is of a shape of type \"disk\"; put that shape into a shapegroup"),
+        (instance("<ref id=\"g\"/><ref id=\"g\"/>"), "has more than one <shape>"),
+        (instance("<ref id=\"g\"/><boolean name=\"flip_normals\" value=\"true\"/>"), "has no parameter \"flip_normals\""),
+        (instance(&transform("<scale x=\"0\"/>")), "to_world of shape \"instance\" flattens the group; scale every axis"),
+    ] {
+        let error = error(&content);
+        assert!(error.starts_with("s.xml:1:") && error.contains(thing), "{error}");
+    }
+}
+
+/// Reading goes as deep as groups may, and no deeper, whichever comes first in the file.
+#[test]
+fn groups_may_lie_eight_deep_in_each_other() {
+    let nested = |levels: usize, innermost_first: bool| {
+        let instance = |of: usize| format!("<shape type=\"instance\"><ref id=\"g{of}\"/></shape>");
+        let group = |id: usize| {
+            let content = if id == 1 { "<shape type=\"disk\"/>".to_owned() } else { instance(id - 1) };
+            format!("<shape type=\"shapegroup\" id=\"g{id}\">{content}</shape>")
+        };
+        let groups: String = if innermost_first { (1..=levels).map(group).collect() } else { (1..=levels).rev().map(group).collect() };
+        read(&format!("{SENSOR}{groups}{}", instance(levels)))
+    };
+    for innermost_first in [true, false] {
+        assert_eq!(nested(8, innermost_first).unwrap().description.groups.len(), 8);
+        for levels in [9, 10_000] {
+            let error = nested(levels, innermost_first).unwrap_err().to_string();
+            assert!(error.starts_with("s.xml:1:") && error.contains("instances lie within each other more than 8 deep; write"), "{error}");
+        }
+    }
+}
+
 #[test]
 fn lights_have_mitsubas_defaults() {
     let scene = scene(

@@ -8,7 +8,7 @@ use serde::Serialize;
 use super::effects::{lobes, sides};
 use crate::scene::{
     Scene,
-    description::{Crop, Description, Filter, Geometry, Integrator, Material, MaterialId, SensorKind, Texture},
+    description::{Crop, Description, Filter, Geometry, Instance, Integrator, Material, MaterialId, SensorKind, Shape, Texture},
     lights::ProfileSource,
 };
 
@@ -25,7 +25,9 @@ pub struct Contents {
     pub seed: u64,
     /// By kind, only those there are.
     pub shapes: Vec<Shapes>,
-    /// What rays are cast at: triangles and other shapes.
+    /// Groups and their instances, if there are any.
+    pub groups: Option<Groups>,
+    /// What rays are cast at, triangles and other shapes; those of a group once.
     pub primitives: usize,
     /// Triangles and shapes without area, dropped.
     pub degenerate: usize,
@@ -77,6 +79,19 @@ pub struct Depths {
     pub hide_emitters: bool,
 }
 
+/// Groups and their instances.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct Groups {
+    /// How many groups.
+    pub count: usize,
+    /// How many shapes are in them; they are counted among the scene's as well.
+    pub shapes: usize,
+    /// How many instances are written, in groups as well.
+    pub instances: usize,
+    /// How many shapes the scene would have if each instance were written out.
+    pub written_out: u64,
+}
+
 /// Shapes of one kind.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Shapes {
@@ -121,7 +136,7 @@ impl Contents {
     pub fn of(description: &Description, scene: &Scene) -> Self {
         let Integrator { kind, max_depth, rr_depth, hide_emitters } = description.integrator.clone();
         let (materials, worn) = materials(description);
-        let lights = lights(scene);
+        let (lights, stats) = (lights(scene), scene.build_stats());
         let shining: usize = lights.iter().map(|light| light.count).sum();
         let written = description.emitters.len() + description.shapes.iter().filter(|shape| shape.light.is_some()).count();
         Self {
@@ -130,7 +145,8 @@ impl Contents {
             spp: description.samples_per_pixel,
             seed: description.seed,
             shapes: shapes(description),
-            primitives: scene.build_stats().primitives,
+            groups: groups(description),
+            primitives: stats.primitives - stats.instances,
             degenerate: scene.degenerate(),
             materials,
             unused_materials: description.materials.len() - worn,
@@ -168,9 +184,28 @@ fn camera(description: &Description) -> Camera {
     }
 }
 
+fn groups(description: &Description) -> Option<Groups> {
+    // A group's instances are of groups before it.
+    let mut sizes: Vec<u64> = Vec::with_capacity(description.groups.len());
+    let size = |shapes: &[Shape], instances: &[Instance], sizes: &[u64]| {
+        let inner = instances.iter().map(|instance| sizes.get(instance.group.0 as usize).copied().unwrap_or(0));
+        inner.fold(shapes.len() as u64, u64::saturating_add)
+    };
+    for group in &description.groups {
+        sizes.push(size(&group.shapes, &group.instances, &sizes));
+    }
+    let groups = Groups {
+        count: description.groups.len(),
+        shapes: description.groups.iter().map(|group| group.shapes.len()).sum(),
+        instances: description.instances.len() + description.groups.iter().map(|group| group.instances.len()).sum::<usize>(),
+        written_out: size(&description.shapes, &description.instances, &sizes),
+    };
+    (groups.count > 0).then_some(groups)
+}
+
 fn shapes(description: &Description) -> Vec<Shapes> {
     let mut kinds = ["mesh", "rectangle", "disk", "sphere", "cylinder"].map(|kind| Shapes { kind, count: 0, triangles: 0 });
-    for shape in &description.shapes {
+    for shape in description.all_shapes() {
         let (kind, triangles) = match &shape.geometry {
             Geometry::Mesh { mesh, .. } => (0, mesh.triangles.len()),
             Geometry::Rectangle { .. } => (1, 0),
@@ -188,7 +223,7 @@ fn shapes(description: &Description) -> Vec<Shapes> {
 fn materials(description: &Description) -> (Vec<Materials>, usize) {
     let all = &description.materials;
     let mut wearers: BTreeMap<u32, usize> = BTreeMap::new();
-    for shape in &description.shapes {
+    for shape in description.all_shapes() {
         *wearers.entry(shape.material.0).or_default() += 1;
     }
     let mut used: Vec<u32> = wearers.keys().copied().collect();

@@ -60,7 +60,7 @@ impl Effects {
                 Seat::Point { .. } | Seat::Directional(_) => effects.dirac_lights = true,
             }
         }
-        for shape in &description.shapes {
+        for shape in description.all_shapes() {
             effects.shading_normals |= matches!(&shape.geometry, Geometry::Mesh { mesh, .. } if !mesh.normals.is_empty());
             effects.surface(&description.materials, shape.material);
         }

@@ -27,14 +27,30 @@ use super::{
 pub struct BuildStats {
     /// Primitives that went in.
     pub primitives: usize,
+    /// Triangles among them, and two for each parallelogram.
+    pub triangles: usize,
+    /// Instances among them.
+    pub instances: usize,
     /// Inner nodes of the tree.
     pub nodes: usize,
     /// Leaves that hold up to four triangles.
     pub packets: usize,
-    /// Memory of the whole structure.
+    /// Memory of the whole structure; what stands in instances is not counted.
     pub bytes: usize,
     /// Wall-clock time.
     pub seconds: f64,
+}
+
+impl std::ops::AddAssign for BuildStats {
+    fn add_assign(&mut self, other: Self) {
+        self.primitives += other.primitives;
+        self.triangles += other.triangles;
+        self.instances += other.instances;
+        self.nodes += other.nodes;
+        self.packets += other.packets;
+        self.bytes += other.bytes;
+        self.seconds += other.seconds;
+    }
 }
 
 impl Bvh {
@@ -47,9 +63,8 @@ impl Bvh {
         drop(bounds);
 
         let mut bvh = Self::empty(everything, primitives.some_hidden);
-        let count = primitives.len();
+        let (count, triangles) = (primitives.len(), primitives.triangles.len());
         if count > 0 {
-            let triangles = primitives.triangles.len();
             let plan = Collapse::new(&binary, |primitive| primitive < triangles);
             Wide { binary: &binary, plan: &plan, primitives: &primitives, bvh: &mut bvh }.emit();
         }
@@ -59,6 +74,8 @@ impl Bvh {
         (bvh.most_waiting, bvh.levels) = (bvh.most_waiting + waiting, levels);
         bvh.stats = BuildStats {
             primitives: count,
+            triangles,
+            instances: bvh.instances.len(),
             nodes: bvh.nodes.len(),
             packets: bvh.packets.len(),
             bytes: bvh.bytes(),
@@ -140,7 +157,6 @@ impl Wide<'_> {
         let mut item = items[0];
         if item < all.triangles.len() {
             let triangles: Vec<_> = items.iter().map(|&item| (all.triangles.shapes[item], all.triangles.keys[item])).collect();
-            assert!(self.bvh.packets.len() < Child::MOST, "a tree holds at most 2^26 packets of triangles");
             self.bvh.packets.push(Packet::new(&triangles));
             return Child::leaf(Leaf::Packet, self.bvh.packets.len() - 1);
         }

@@ -3,7 +3,7 @@
 use std::{cell::RefCell, mem::size_of_val};
 
 use bidir_kernel::Ray;
-use glam::DVec3;
+use glam::{DAffine3, DVec3};
 
 use super::{
     Geometry, RayHit,
@@ -136,7 +136,7 @@ impl<const ANY: bool, const FAST: bool, const NESTED: bool> Work for Descent<'_,
                 }
                 None
             } else {
-                let node = &bvh.nodes[child.index()];
+                let node = &bvh.nodes[child.0 as usize];
                 let entered = slabs.enter(node, nearest.t);
                 bvh.next_child::<ANY, L>(lanes, node, entered, stack, &mut waiting)
             };
@@ -246,6 +246,20 @@ impl Bvh {
         Self { machine: Machine::Any, ..self }
     }
 
+    /// From the coordinates of what was hit to those of this tree: the identity, unless it was hit in an instance.
+    pub fn to_world(&self, hit: &RayHit) -> DAffine3 {
+        let (mut whole, mut bvh, mut leaf) = (DAffine3::IDENTITY, self, Child(hit.slot));
+        for slot in hit.trail {
+            if leaf.kind() != Leaf::Instance {
+                break;
+            }
+            let instance = &bvh.instances[leaf.index()].shape;
+            whole = whole * instance.placed();
+            (bvh, leaf) = (instance.geometry(), Child(slot));
+        }
+        whole
+    }
+
     /// What building took and made.
     pub fn stats(&self) -> BuildStats {
         self.stats
@@ -262,7 +276,7 @@ impl Bvh {
 
     fn key(&self, leaf: Child) -> Key {
         match leaf.kind() {
-            Leaf::Packet => self.packets[leaf.index() / PACKET].keys[leaf.index() % PACKET],
+            Leaf::Packet => self.packets[leaf.packet() / PACKET].keys[leaf.packet() % PACKET],
             Leaf::Sphere => self.spheres[leaf.index()].key,
             Leaf::Disk => self.disks[leaf.index()].key,
             Leaf::Cylinder => self.cylinders[leaf.index()].key,
@@ -275,7 +289,7 @@ impl Bvh {
         let here = |position: DVec3, normal, local| Found { position, normal, local, error: rounding(position, &self.bounds) };
         match leaf.kind() {
             Leaf::Packet => {
-                let (packet, lane) = (&self.packets[leaf.index() / PACKET], leaf.index() % PACKET);
+                let (packet, lane) = (&self.packets[leaf.packet() / PACKET], leaf.packet() % PACKET);
                 let [a, b, c] = packet.triangle(lane).map(|corner| corner.as_dvec3());
                 let (x, y) = (b - a, c - a);
                 let (b1, b2) = if packet.keys[lane].is_second_half() { (1.0 - one, 1.0 - two) } else { (one, two) };
@@ -336,7 +350,7 @@ impl Bvh {
     #[inline]
     fn exact_distance(&self, probe: &Probe, leaf: Child, trail: &[u32]) -> Option<f32> {
         match leaf.kind() {
-            Leaf::Packet => Some(self.packets[leaf.index() / PACKET].exact_distance(probe, leaf.index() % PACKET)),
+            Leaf::Packet => Some(self.packets[leaf.packet() / PACKET].exact_distance(probe, leaf.packet() % PACKET)),
             Leaf::Instance => self.exact_distance_within(probe, leaf, trail),
             _ => None,
         }
@@ -386,17 +400,17 @@ impl Bvh {
     #[inline(always)]
     fn prefetch<L: Lanes>(&self, lanes: L, child: Child) {
         if !child.is_leaf() {
-            lanes.prefetch(&self.nodes, child.index());
+            lanes.prefetch(&self.nodes, child.0 as usize);
         } else if child.kind() == Leaf::Packet {
-            lanes.prefetch(&self.packets, child.index());
+            lanes.prefetch(&self.packets, child.packet());
         }
     }
 
     /// Offers what the ray hits of a packet.
     #[inline(always)]
     fn meet_packet<const FAST: bool>(&self, leaf: Child, probe: &Probe, shear: &Shear, entry: f32, nearest: &mut Nearest) {
-        let slot = Child::leaf(Leaf::Packet, leaf.index() * PACKET);
-        let packet = &self.packets[leaf.index()];
+        let slot = Child::leaf(Leaf::Packet, leaf.packet() * PACKET);
+        let packet = &self.packets[leaf.packet()];
         if FAST { packet.intersect_fast(probe, slot.0, nearest) } else { packet.intersect(probe, shear, slot.0, entry, nearest) }
     }
 

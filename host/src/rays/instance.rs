@@ -38,6 +38,11 @@ impl Instance {
         &self.geometry
     }
 
+    /// Local → world.
+    pub(super) fn placed(&self) -> DAffine3 {
+        self.to_world
+    }
+
     /// In the world.
     pub(super) fn bounds(&self) -> Bounds {
         let Bounds { min, max } = self.geometry.bounds();

@@ -4,7 +4,8 @@ use super::{bounds::Bounds, lanes::Lanes, probe::Probe};
 
 pub(super) use super::lanes::WIDTH;
 
-/// What a child is: an inner node, or a leaf of one kind; the kind is in the top four bits.
+/// What a child is: an inner node, or a leaf of one kind. The top bit tells leaves; the next is 0 for a packet, which leaves
+/// thirty bits for its number, or for that of one of its triangles; else two more tell the kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Child(pub u32);
 
@@ -14,16 +15,13 @@ pub(super) struct Child(pub u32);
 pub(super) enum Leaf {
     /// A packet of up to four triangles.
     Packet = 8,
-    Sphere = 9,
-    Disk = 10,
-    Cylinder = 11,
-    Instance = 12,
+    Sphere = 12,
+    Disk = 13,
+    Cylinder = 14,
+    Instance = 15,
 }
 
 impl Child {
-    /// How many leaves of a kind there can be.
-    pub const MOST: usize = 1 << 26;
-
     pub fn inner(index: usize) -> Self {
         Self(index as u32)
     }
@@ -40,15 +38,21 @@ impl Child {
     #[inline(always)]
     pub fn kind(self) -> Leaf {
         match self.0 >> 28 {
-            9 => Leaf::Sphere,
-            10 => Leaf::Disk,
-            11 => Leaf::Cylinder,
-            12 => Leaf::Instance,
+            12 => Leaf::Sphere,
+            13 => Leaf::Disk,
+            14 => Leaf::Cylinder,
+            15 => Leaf::Instance,
             _ => Leaf::Packet,
         }
     }
 
-    /// Of a leaf, among its kind.
+    /// Of a packet, or of a triangle in one.
+    #[inline(always)]
+    pub fn packet(self) -> usize {
+        (self.0 & 0x3fff_ffff) as usize
+    }
+
+    /// Of any other leaf, among its kind.
     #[inline(always)]
     pub fn index(self) -> usize {
         (self.0 & 0x0fff_ffff) as usize

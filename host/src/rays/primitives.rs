@@ -20,7 +20,8 @@ pub enum Visibility {
     HiddenFromLens,
 }
 
-/// A list of primitives, kept by kind. All of them have to be finite and of more than no area; at most 2^28.
+/// A list of primitives, kept by kind. All of them have to be finite and of more than no area. What is inserted gets the next
+/// number, or is left out, which is told by `None`, where the list holds [`Primitives::MOST`].
 #[derive(Clone, Debug, Default)]
 pub struct Primitives {
     count: u32,
@@ -57,6 +58,9 @@ impl<T> Kind<T> {
 }
 
 impl Primitives {
+    /// How many there can be, and how many triangles, of which a parallelogram is two: places in a tree have 28 bits.
+    pub const MOST: usize = (1 << 28) - 1;
+
     /// None yet.
     pub fn new() -> Self {
         Self::default()
@@ -79,56 +83,72 @@ impl Primitives {
     }
 
     /// Inserts the triangle a, b, c; its normal is (b − a) × (c − a).
-    pub fn triangle(&mut self, corners: [Vec3; 3], visibility: Visibility) -> PrimitiveId {
-        let key = self.next(visibility);
+    pub fn triangle(&mut self, corners: [Vec3; 3], visibility: Visibility) -> Option<PrimitiveId> {
+        let key = self.next(visibility, 1)?;
         self.triangles.push(corners, key);
-        PrimitiveId(key.primitive())
+        Some(PrimitiveId(key.primitive()))
     }
 
     /// Inserts a parallelogram.
-    pub fn parallelogram(&mut self, shape: Parallelogram, visibility: Visibility) -> PrimitiveId {
-        let key = self.next(visibility);
+    pub fn parallelogram(&mut self, shape: Parallelogram, visibility: Visibility) -> Option<PrimitiveId> {
+        let key = self.next(visibility, 2)?;
         let [first, second] = shape.halves();
         self.triangles.push(first, key);
         self.triangles.push(second, key.second_half());
-        PrimitiveId(key.primitive())
+        Some(PrimitiveId(key.primitive()))
     }
 
     /// Inserts a sphere.
-    pub fn sphere(&mut self, shape: Sphere, visibility: Visibility) -> PrimitiveId {
-        let key = self.next(visibility);
+    pub fn sphere(&mut self, shape: Sphere, visibility: Visibility) -> Option<PrimitiveId> {
+        let key = self.next(visibility, 0)?;
         self.spheres.push(shape, key);
-        PrimitiveId(key.primitive())
+        Some(PrimitiveId(key.primitive()))
     }
 
     /// Inserts a disk or an ellipse.
-    pub fn disk(&mut self, shape: Disk, visibility: Visibility) -> PrimitiveId {
-        let key = self.next(visibility);
+    pub fn disk(&mut self, shape: Disk, visibility: Visibility) -> Option<PrimitiveId> {
+        let key = self.next(visibility, 0)?;
         self.disks.push(shape, key);
-        PrimitiveId(key.primitive())
+        Some(PrimitiveId(key.primitive()))
     }
 
     /// Inserts the side of a cylinder.
-    pub fn cylinder(&mut self, shape: Cylinder, visibility: Visibility) -> PrimitiveId {
-        let key = self.next(visibility);
+    pub fn cylinder(&mut self, shape: Cylinder, visibility: Visibility) -> Option<PrimitiveId> {
+        let key = self.next(visibility, 0)?;
         self.cylinders.push(shape, key);
-        PrimitiveId(key.primitive())
+        Some(PrimitiveId(key.primitive()))
     }
 
     /// Inserts an instance.
-    pub fn instance(&mut self, shape: Instance, visibility: Visibility) -> PrimitiveId {
-        let key = self.next(visibility);
+    pub fn instance(&mut self, shape: Instance, visibility: Visibility) -> Option<PrimitiveId> {
+        let key = self.next(visibility, 0)?;
         self.some_hidden |= shape.geometry().some_hidden;
         self.instances.push(shape, key);
-        PrimitiveId(key.primitive())
+        Some(PrimitiveId(key.primitive()))
     }
 
-    fn next(&mut self, visibility: Visibility) -> Key {
-        assert!(self.count < 1 << 28, "a tree holds at most 2^28 primitives");
+    fn next(&mut self, visibility: Visibility, triangles: usize) -> Option<Key> {
+        if self.len() >= Self::MOST || self.triangles.len() + triangles > Self::MOST {
+            return None;
+        }
         let hidden = visibility == Visibility::HiddenFromLens;
         let key = Key::new(self.count, hidden);
         self.count += 1;
         self.some_hidden |= hidden;
-        key
+        Some(key)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_full_list_takes_nothing_more() {
+        let mut all = Primitives { count: Primitives::MOST as u32 - 1, ..Primitives::default() };
+        let mut insert = || all.triangle([Vec3::ZERO, Vec3::X, Vec3::Y], Visibility::Everywhere);
+        assert_eq!(insert(), Some(PrimitiveId((1 << 28) - 2)));
+        assert_eq!(insert(), None);
+        assert_eq!((all.len(), all.triangles.len()), (Primitives::MOST, 1));
     }
 }

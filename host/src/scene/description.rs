@@ -24,8 +24,28 @@ pub struct Description {
     pub materials: Vec<Material>,
     /// Geometry.
     pub shapes: Vec<Shape>,
+    /// Geometry that only its instances show. A group's instances are of groups that stand before it.
+    pub groups: Vec<Arc<Group>>,
+    /// Where groups stand.
+    pub instances: Vec<Instance>,
     /// Lights that are not on a shape.
     pub emitters: Vec<Emitter>,
+}
+
+impl Description {
+    /// The shapes of the scene, and of every group once.
+    pub fn all_shapes(&self) -> impl Iterator<Item = &Shape> {
+        self.shapes.iter().chain(self.groups.iter().flat_map(|group| &group.shapes))
+    }
+
+    /// How many triangles and other shapes trees are built over; those of a group once.
+    pub fn primitives(&self) -> usize {
+        let sizes = self.all_shapes().map(|shape| match &shape.geometry {
+            Geometry::Mesh { mesh, .. } => mesh.triangles.len(),
+            _ => 1,
+        });
+        sizes.sum::<usize>()
+    }
 }
 
 /// The scene's integrator. Which techniques run is not its to say.
@@ -341,6 +361,32 @@ pub struct Shape {
     pub light: Option<ShapeLight>,
     /// Its id, or its type where it has none; for messages.
     pub name: String,
+    /// Where it stands in the file.
+    pub place: Place,
+}
+
+/// A group's name: its index in [`Description::groups`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct GroupId(pub u32);
+
+/// Geometry with coordinates of its own.
+#[derive(Clone, Debug)]
+pub struct Group {
+    /// None of them shines.
+    pub shapes: Vec<Shape>,
+    /// Groups within this one.
+    pub instances: Vec<Instance>,
+    /// Where it stands in the file.
+    pub place: Place,
+}
+
+/// A group that stands somewhere, perhaps among many of the same.
+#[derive(Clone, Debug)]
+pub struct Instance {
+    /// Which group.
+    pub group: GroupId,
+    /// The group's coordinates → the world, or the group that this stands in.
+    pub to_world: DAffine3,
     /// Where it stands in the file.
     pub place: Place,
 }

@@ -2,9 +2,12 @@
 
 mod build;
 pub mod camera;
+mod centre;
 pub mod choice;
+mod collection;
 pub mod description;
 pub mod extent;
+mod group;
 pub mod lights;
 pub mod outflow;
 pub mod shape;
@@ -14,12 +17,17 @@ pub mod view;
 
 use std::sync::Arc;
 
+use bidir_kernel::{Point, Ray};
+use glam::DVec3;
+
 use crate::{
     plugin::Roster,
-    rays::{BuildStats, Bvh},
+    rays::{BuildStats, Bvh, Geometry as _, RayHit},
 };
 use camera::SceneCamera;
 use choice::Lights;
+use description::GroupId;
+use group::{Group, Owner};
 use shape::Shape;
 use surface::Finish;
 
@@ -27,9 +35,12 @@ use surface::Finish;
 #[derive(Debug)]
 pub struct Scene {
     camera: SceneCamera,
+    origin: DVec3,
     geometry: Bvh,
-    /// Of each primitive: its shape, and its number among the shape's triangles.
-    owners: Vec<(u32, u32)>,
+    /// Of each primitive of `geometry`.
+    owners: Vec<Owner>,
+    groups: Vec<Group>,
+    /// Those that stand in no group, then each group's.
     shapes: Vec<Shape>,
     finishes: Vec<Finish>,
     lights: Lights,
@@ -44,9 +55,52 @@ impl Scene {
         self.degenerate
     }
 
-    /// What building the tree took.
+    /// What building the trees took, added up, each group's once. Memory includes what tells whose a primitive is; the meshes'
+    /// own vertices and indices come on top.
     pub fn build_stats(&self) -> BuildStats {
-        self.geometry.stats()
+        let mut all = BuildStats { bytes: size_of_val(&*self.owners), ..BuildStats::default() };
+        all += self.geometry.stats();
+        for group in &self.groups {
+            all += group.geometry.stats();
+            all.bytes += size_of_val(&*group.owners);
+        }
+        all
+    }
+
+    /// Where the scene's coordinates begin, in the file's.
+    pub fn origin(&self) -> DVec3 {
+        self.origin
+    }
+
+    /// The outermost tree.
+    pub fn geometry(&self) -> &Bvh {
+        &self.geometry
+    }
+
+    /// The tree of a group, which is shared with scenes that were [rebuilt](Self::rebuilt) from this one or that this one was from.
+    pub fn group(&self, id: GroupId) -> Option<&Arc<Bvh>> {
+        self.groups.get(id.0 as usize).map(|group| &group.geometry)
+    }
+
+    /// The point of a hit that [`Self::geometry`] gave for this ray, and the number of its shape.
+    #[inline]
+    pub fn met(&self, ray: &Ray, hit: &RayHit) -> (Point, u32) {
+        let owner = self.owners[hit.primitive.0 as usize];
+        match owner.triangle() {
+            Some(triangle) => (self.shapes[owner.of as usize].point(&self.geometry.surface(ray, hit), triangle), owner.of),
+            None => self.met_in_instance(ray, hit, owner),
+        }
+    }
+
+    fn met_in_instance(&self, ray: &Ray, hit: &RayHit, mut owner: Owner) -> (Point, u32) {
+        let (mut triangle, mut first) = (0, 0);
+        for inner in self.geometry.path(hit).skip(1) {
+            let group = &self.groups[owner.of as usize];
+            owner = group.owners[inner.0 as usize];
+            (triangle, first) = (owner.triangle().unwrap_or(0), group.shapes.start);
+        }
+        let (shape, to_world) = (first + owner.of, self.geometry.to_world(hit).matrix3);
+        (self.shapes[shape as usize].point_in_instance(&self.geometry.surface(ray, hit), triangle, &to_world), shape)
     }
 
     /// The lights.
@@ -54,7 +108,7 @@ impl Scene {
         &self.lights
     }
 
-    /// The shapes.
+    /// The shapes: those that stand in no group, then each group's.
     pub fn shapes(&self) -> &[Shape] {
         &self.shapes
     }

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use bidir_kernel::{Frame, Mat3, Point, Real, Vec2, Vec3, math};
+use glam::DMat3;
 
 use crate::{
     rays::SurfacePoint,
@@ -39,15 +40,49 @@ pub enum Form {
     Mesh(MeshForm),
 }
 
-/// A mesh's vertex data and how to bring it into the world.
+/// A mesh's vertex data and how to bring it into the world, or into the coordinates of its group.
 #[derive(Clone, Debug)]
 pub struct MeshForm {
     /// In its own coordinates.
     pub mesh: Arc<Mesh>,
+    /// Its own coordinates → the world.
+    pub turn: Turn,
+}
+
+/// What a transform does to directions, up to scale.
+#[derive(Clone, Copy, Debug)]
+pub struct Turn {
     /// For directions along the surface.
-    pub to_world: Mat3,
-    /// For normals: the inverse transpose, up to scale.
-    pub normal_to_world: Mat3,
+    pub along: Mat3,
+    /// For normals: the inverse transpose.
+    pub normal: Mat3,
+}
+
+impl Turn {
+    /// Of a transform that can be undone.
+    pub fn of(to_world: &DMat3) -> Self {
+        let m = to_world;
+        // The cofactors are the inverse transpose times the determinant; its sign is kept out, so that mirroring leaves normals outside.
+        let cofactors = DMat3::from_cols(m.y_axis.cross(m.z_axis), m.z_axis.cross(m.x_axis), m.x_axis.cross(m.y_axis));
+        Self { along: m.as_mat3(), normal: scaled(&cofactors, m.determinant().signum()) }
+    }
+
+    /// Of an instance, whose scale may be any.
+    fn of_instance(to_world: &DMat3) -> Self {
+        Self { along: scaled(to_world, 1.0), ..Self::of(to_world) }
+    }
+
+    /// This, and `next` after it.
+    fn then(&self, next: &Self) -> Self {
+        Self { along: next.along * self.along, normal: next.normal * self.normal }
+    }
+}
+
+/// With a largest entry of 1, times `sign`.
+fn scaled(matrix: &DMat3, sign: f64) -> Mat3 {
+    let largest = matrix.to_cols_array().iter().fold(0.0, |a: f64, b| a.max(b.abs()));
+    let scale = sign / largest.max(f64::MIN_POSITIVE);
+    Mat3::from_cols_array(&(*matrix * scale).to_cols_array().map(|v| v as f32))
 }
 
 const TURN: Real = 2.0 * std::f32::consts::PI;
@@ -56,25 +91,43 @@ impl Shape {
     /// The point of a hit; `triangle` is the number within a mesh.
     #[inline]
     pub fn point(&self, at: &SurfacePoint, triangle: u32) -> Point {
+        self.turned(at, triangle, None)
+    }
+
+    /// The point of a hit in an instance, whose coordinates `to_world` brings into the world.
+    pub fn point_in_instance(&self, at: &SurfacePoint, triangle: u32, to_world: &DMat3) -> Point {
+        self.turned(at, triangle, Some(&Turn::of_instance(to_world)))
+    }
+
+    #[inline(always)]
+    fn turned(&self, at: &SurfacePoint, triangle: u32, turn: Option<&Turn>) -> Point {
         let normal = at.normal * self.facing;
         let flat = |normal: Vec3, tangent: Vec3, uv: Vec2| {
+            let tangent = turn.map_or(tangent, |turn| turn.along * tangent);
             let frame = if self.mapped { Frame::from_z_and_tangent(normal, tangent) } else { Frame::from_z(normal) };
             Point::surface(at.position, normal, frame, uv, at.offset)
         };
         let local = at.local;
         match &self.form {
             Form::Parallelogram(tangent) => flat(normal, *tangent, Vec2::new(local.x, local.y)),
-            Form::Mesh(mesh) => mesh.point(at, triangle, self),
+            Form::Mesh(mesh) => {
+                let whole = turn.map(|turn| mesh.turn.then(turn));
+                mesh.point(at, triangle, self, whole.as_ref().unwrap_or(&mesh.turn))
+            }
             _ if !self.mapped => flat(normal, Vec3::ZERO, Vec2::ZERO),
             Form::Disk(x, y) => {
                 let radius = math::sqrt(local.x * local.x + local.y * local.y);
-                flat(normal, *x * local.x + *y * local.y, Vec2::new(radius, turn(local.y, local.x)))
+                flat(normal, *x * local.x + *y * local.y, Vec2::new(radius, share_of_turn(local.y, local.x)))
             }
             Form::Sphere(axes) => {
                 let (uv, tangent) = round_mapping(axes, local);
                 flat(normal, tangent, uv)
             }
-            Form::Cylinder(axis) => flat(normal, axis.cross(at.normal), Vec2::new(turn(local.y, local.x), local.z)),
+            Form::Cylinder(axis) => {
+                // Normals go back by the transpose.
+                let out = turn.map_or(at.normal, |turn| turn.along.transpose() * at.normal);
+                flat(normal, axis.cross(out), Vec2::new(share_of_turn(local.y, local.x), local.z))
+            }
         }
     }
 }
@@ -82,11 +135,11 @@ impl Shape {
 /// Surface coordinates of a sphere with those axes, and the direction in which u grows, where `out` leads from its centre.
 pub fn round_mapping([x, y, z]: &[Vec3; 3], out: Vec3) -> (Vec2, Vec3) {
     let (a, b, c) = (math::dot(out, *x), math::dot(out, *y), math::dot(out, *z));
-    (Vec2::new(turn(b, a), math::safe_acos(c) / std::f32::consts::PI), *y * a - *x * b)
+    (Vec2::new(share_of_turn(b, a), math::safe_acos(c) / std::f32::consts::PI), *y * a - *x * b)
 }
 
 /// The angle of (x, y) in 0 … 1.
-fn turn(y: Real, x: Real) -> Real {
+fn share_of_turn(y: Real, x: Real) -> Real {
     let turn = math::atan2(y, x) / TURN;
     if turn < 0.0 { turn + 1.0 } else { turn }
 }
@@ -99,52 +152,64 @@ impl MeshForm {
 
     /// −1 where a triangle's winding disagrees with its vertex normals, which decide.
     pub fn facing(&self, triangle: u32, geometric: Vec3) -> Real {
+        self.facing_in(triangle, geometric, &self.turn)
+    }
+
+    fn facing_in(&self, triangle: u32, geometric: Vec3, turn: &Turn) -> Real {
         match self.corners(&self.mesh.normals, triangle) {
             Some([a, b, c]) => {
                 let sum = Vec3::from(a) + Vec3::from(b) + Vec3::from(c);
-                if math::dot(self.normal_to_world * sum, geometric) < 0.0 { -1.0 } else { 1.0 }
+                if math::dot(turn.normal * sum, geometric) < 0.0 { -1.0 } else { 1.0 }
             }
             None => 1.0,
         }
     }
 
-    fn point(&self, at: &SurfacePoint, triangle: u32, shape: &Shape) -> Point {
+    fn point(&self, at: &SurfacePoint, triangle: u32, shape: &Shape, turn: &Turn) -> Point {
         let (b1, b2) = (at.local.x, at.local.y);
         let mut geometric = at.normal;
         let mut shading = None;
         if !self.mesh.normals.is_empty() {
-            geometric *= self.facing(triangle, geometric);
-            shading = self.shading_normal(triangle, b1, b2);
+            geometric *= self.facing_in(triangle, geometric, turn);
+            shading = self.shading_normal_in(triangle, b1, b2, turn);
         }
         let shading = shading.unwrap_or(geometric) * shape.facing;
         let geometric = geometric * shape.facing;
         if !shape.mapped {
             return Point::surface(at.position, geometric, Frame::from_z(shading), Vec2::ZERO, at.offset);
         }
-        let (uv, tangent) = self.mapping(triangle, b1, b2);
+        let (uv, tangent) = self.mapping_in(triangle, b1, b2, turn);
         Point::surface(at.position, geometric, Frame::from_z_and_tangent(shading, tangent), uv, at.offset)
     }
 
     /// The normal between the vertices' own, unit; `None` without those, or where they cancel.
     pub fn shading_normal(&self, triangle: u32, b1: Real, b2: Real) -> Option<Vec3> {
+        self.shading_normal_in(triangle, b1, b2, &self.turn)
+    }
+
+    fn shading_normal_in(&self, triangle: u32, b1: Real, b2: Real, turn: &Turn) -> Option<Vec3> {
         let [n0, n1, n2] = self.corners(&self.mesh.normals, triangle)?;
         let mixed = Vec3::from(n0) * (1.0 - b1 - b2) + Vec3::from(n1) * b1 + Vec3::from(n2) * b2;
-        math::normalize(self.normal_to_world * mixed)
+        math::normalize(turn.normal * mixed)
     }
 
     /// Surface coordinates, and the direction in which u grows. A mesh without coordinates has its barycentric ones.
     pub fn mapping(&self, triangle: u32, b1: Real, b2: Real) -> (Vec2, Vec3) {
+        self.mapping_in(triangle, b1, b2, &self.turn)
+    }
+
+    fn mapping_in(&self, triangle: u32, b1: Real, b2: Real, turn: &Turn) -> (Vec2, Vec3) {
         let Some([p0, p1, p2]) = self.corners(&self.mesh.positions, triangle).map(|corners| corners.map(Vec3::from)) else {
             return (Vec2::ZERO, Vec3::ZERO);
         };
         let (e1, e2) = (p1 - p0, p2 - p0);
         let Some([t0, t1, t2]) = self.corners(&self.mesh.uvs, triangle).map(|corners| corners.map(Vec2::from)) else {
-            return (Vec2::new(b1, b2), self.to_world * e1);
+            return (Vec2::new(b1, b2), turn.along * e1);
         };
         let uv = t0 * (1.0 - b1 - b2) + t1 * b1 + t2 * b2;
         let (d1, d2) = (t1 - t0, t2 - t0);
         let determinant = d1.x * d2.y - d1.y * d2.x;
         let along_u = if determinant == 0.0 { e1 } else { (e1 * d2.y - e2 * d1.y) / determinant };
-        (uv, self.to_world * along_u)
+        (uv, turn.along * along_u)
     }
 }

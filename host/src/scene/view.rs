@@ -87,9 +87,8 @@ impl bidir_kernel::Scene for View<'_> {
     fn intersect(&self, ray: &Ray) -> Option<(Point, Hit)> {
         self.closest.set(self.closest.get() + 1);
         let hit = self.scene.geometry.closest(ray)?;
-        let at = self.scene.geometry.surface(ray, &hit);
-        let (shape, triangle) = self.scene.owners[hit.primitive.0 as usize];
-        Some((self.scene.shapes[shape as usize].point(&at, triangle), Hit { shape }))
+        let (point, shape) = self.scene.met(ray, &hit);
+        Some((point, Hit { shape }))
     }
 
     #[inline]

@@ -3,7 +3,7 @@
 use super::Report;
 use crate::{
     plan::{
-        contents::{Camera, Contents, Lights, Materials, Shapes},
+        contents::{Camera, Contents, Groups, Lights, Materials, Shapes},
         joins::State,
     },
     render::LONGEST_JOINED,
@@ -65,6 +65,10 @@ fn contents(lines: &mut Vec<String>, contents: &Contents) {
     lines.push(entry("sampler", &format!("{spp} samples per pixel, seed {seed}")));
     let shapes: Vec<_> = contents.shapes.iter().map(shape).collect();
     lines.push(entry("shapes", &or_none(shapes.join(", "))));
+    if let Some(Groups { count: number, shapes, instances, written_out }) = contents.groups {
+        let (groups, instances) = (count(number, "group"), count(instances, "instance"));
+        lines.push(entry("groups", &format!("{groups} of {}, {instances}; written out, {written_out} shapes", count(shapes, "shape"))));
+    }
     let dropped = if *degenerate > 0 { format!(", {degenerate} without area dropped") } else { String::new() };
     lines.push(entry("", &format!("{} to cast rays at{dropped}", count(*primitives, "primitive"))));
     listed(lines, "materials", contents.materials.iter().map(material));
