@@ -77,11 +77,11 @@ fn moved(subject: &Description, scale: f64, away: f64) -> (Scene, [Vec3; 2]) {
         | Geometry::Disk { to_world, .. }
         | Geometry::Sphere { to_world, .. }
         | Geometry::Cylinder { to_world, .. }) = &mut shape.geometry;
-        to_world.matrix3 = to_world.matrix3 * scale;
+        to_world.matrix3 *= scale;
         to_world.translation = (to_world.translation - origin) * scale + offset;
     }
     for instance in &mut description.instances {
-        instance.to_world.matrix3 = instance.to_world.matrix3 * scale;
+        instance.to_world.matrix3 *= scale;
         instance.to_world.translation = (instance.to_world.translation - origin) * scale + offset;
     }
     if away > 0.0 {

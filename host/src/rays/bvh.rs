@@ -254,7 +254,7 @@ impl Bvh {
                 break;
             }
             let instance = &bvh.instances[leaf.index()].shape;
-            whole = whole * instance.placed();
+            whole *= instance.placed();
             (bvh, leaf) = (instance.geometry(), Child(slot));
         }
         whole
