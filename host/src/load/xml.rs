@@ -1,6 +1,9 @@
 //! A scene file as a tree of elements: parameters filled in, includes spliced in, and every element knowing its place.
 
-use std::path::{Path, PathBuf};
+use std::{
+    cell::Cell,
+    path::{Path, PathBuf},
+};
 
 use super::{defines::Defines, suggest::list};
 use crate::error::{Error, Place, Result};
@@ -129,7 +132,7 @@ impl Reader<'_> {
             let message = message.rsplit_once(" at ").map_or(message.as_str(), |(m, _)| m);
             Error::at(&place, format!("broken XML: {message}"), "mend the file")
         })?;
-        let places = Places { name, text, lines: text.match_indices('\n').map(|(at, _)| at + 1).collect() };
+        let places = Places { name, text, lines: text.match_indices('\n').map(|(at, _)| at + 1).collect(), last: Cell::new((0, 1)) };
         let root = document.root_element();
         check_version(root, &places.of(root))?;
         self.node(root, &places, depth, out)
@@ -222,6 +225,8 @@ struct Places<'a> {
     text: &'a str,
     /// Where each line but the first begins.
     lines: Vec<usize>,
+    /// The last place, in bytes, and its column: nodes come in order, so a long line is counted just once.
+    last: Cell<(usize, usize)>,
 }
 
 impl Places<'_> {
@@ -229,7 +234,12 @@ impl Places<'_> {
         let at = node.range().start.min(self.text.len());
         let line = self.lines.partition_point(|&start| start <= at);
         let start = if line == 0 { 0 } else { self.lines[line - 1] };
-        let column = 1 + self.text.get(start..at).map_or(0, |t| t.chars().count());
+        let (from, before) = match self.last.get() {
+            (last, column) if (start..=at).contains(&last) => (last, column),
+            _ => (start, 1),
+        };
+        let column = before + self.text.get(from..at).map_or(0, |t| t.chars().count());
+        self.last.set((at, column));
         Place { file: self.name.to_owned(), position: Some((line as u32 + 1, column as u32)) }
     }
 }
