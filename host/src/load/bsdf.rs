@@ -19,13 +19,14 @@ use crate::{
 /// How deep materials may nest, references followed.
 const MAX_DEPTH: usize = 16;
 
-/// The material of a shape that names none.
-pub(super) fn default(context: &mut Context) -> MaterialId {
-    if let Some(known) = context.default_material {
+/// The material of a shape that names none: grey, or black where the shape shines, as in Mitsuba.
+pub(super) fn default(context: &mut Context, shines: bool) -> MaterialId {
+    if let Some(known) = context.default_materials[usize::from(shines)] {
         return known;
     }
-    let id = add(context, Material::Diffuse { reflectance: Texture::Constant(Spectrum::splat(0.5)) });
-    context.default_material = Some(id);
+    let reflectance = if shines { 0.0 } else { 0.5 };
+    let id = add(context, Material::Diffuse { reflectance: Texture::Constant(Spectrum::splat(reflectance)) });
+    context.default_materials[usize::from(shines)] = Some(id);
     id
 }
 

@@ -26,7 +26,7 @@ pub(super) struct Context<'s> {
     pub(super) groups_read: HashMap<u32, Option<Known>>,
     /// How many groups are being read, each inside the one before.
     pub(super) groups_open: usize,
-    pub(super) default_material: Option<MaterialId>,
+    pub(super) default_materials: [Option<MaterialId>; 2],
     /// By the file and everything that changes what is read from it.
     pub(super) bitmaps: HashMap<String, Arc<Bitmap>>,
     pub(super) environments: HashMap<PathBuf, Arc<EnvironmentImage>>,
@@ -48,7 +48,7 @@ impl<'s> Context<'s> {
             groups: Vec::new(),
             groups_read: HashMap::new(),
             groups_open: 0,
-            default_material: None,
+            default_materials: [None; 2],
             bitmaps: HashMap::new(),
             environments: HashMap::new(),
             meshes: HashMap::new(),

@@ -32,14 +32,15 @@ pub(super) fn shape(context: &mut Context, element: &Element, light: Light) -> R
             return Err(Error::at(&medium.place, format!("{name} media are not supported"), "take the medium out"));
         }
     }
-    let material = match of.object("bsdf")? {
-        Some(bsdf) => bsdf::material(context, bsdf)?,
-        None => bsdf::default(context),
-    };
+    let bsdf = of.object("bsdf")?;
     let light = match of.object("emitter")? {
         Some(emitter) if light == Light::Refused => return Err(no_light(emitter)),
         Some(light) => Some(emitter::area(context, light, &element.place)?),
         None => None,
+    };
+    let material = match bsdf {
+        Some(bsdf) => bsdf::material(context, bsdf)?,
+        None => bsdf::default(context, light.is_some()),
     };
     of.finish()?;
     let name = element.attribute("id").or(element.attribute("type")).unwrap_or("shape").to_owned();

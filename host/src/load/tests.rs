@@ -154,10 +154,18 @@ fn every_known_plugin_that_is_not_supported_is_refused() {
 }
 
 #[test]
-fn a_shape_without_a_bsdf_is_diffuse_one_half() {
-    let scene = scene("<shape type=\"cube\"/><shape type=\"disk\"/>");
-    assert_eq!(scene.materials.len(), 1);
-    assert!(matches!(&scene.materials[0], Material::Diffuse { reflectance: Texture::Constant(c) } if *c == Spectrum::splat(0.5)));
+fn a_shape_without_a_bsdf_is_diffuse_one_half_or_black_if_it_shines() {
+    let lamp = "<shape type=\"disk\"><emitter type=\"area\"/></shape>";
+    let scene = scene(&format!("<shape type=\"cube\"/><shape type=\"disk\"/>{lamp}{lamp}"));
+    let reflectances: Vec<_> = scene
+        .materials
+        .iter()
+        .map(|material| match material {
+            Material::Diffuse { reflectance: Texture::Constant(c) } => *c,
+            other => panic!("{other:?}"),
+        })
+        .collect();
+    assert_eq!(reflectances, [0.5, 0.0].map(Spectrum::splat));
 }
 
 #[test]
