@@ -5,6 +5,7 @@
 #![cfg(test)]
 
 mod agreement;
+mod check;
 mod depth;
 mod furnace;
 mod hostile;

@@ -34,5 +34,7 @@ pub mod render;
 #[cfg(feature = "renderer")]
 pub mod compare;
 
+pub mod check;
+
 #[cfg(feature = "renderer")]
 pub mod cli;

@@ -27,6 +27,8 @@ pub enum Command {
     Techniques(Techniques),
     /// Hold an image against a reference: relMSE, SMAPE, bias, worst block
     Compare(Compare),
+    /// Test whether a BSDF or a light is right, and say in words what is wrong and where
+    Check(Check),
     /// Begin a plugin, list plugins, or look into one
     #[command(subcommand)]
     Plugin(Plugin),
@@ -140,6 +142,32 @@ pub struct Compare {
     pub image: PathBuf,
     /// The reference
     pub reference: PathBuf,
+    /// As JSON
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `bidir check`
+#[derive(Debug, Args)]
+pub struct Check {
+    /// A plugin's .wasm file, the name of a built-in, or that of a plugin in a folder of plugins
+    #[arg(value_name = "PLUGIN.wasm|NAME")]
+    pub subject: String,
+    /// Keep a parameter at a value (a colour: R,G,B or one number); may be given again
+    #[arg(long = "set", value_name = "NAME=VALUE", value_parser = definition, conflicts_with = "replay")]
+    pub set: Vec<(String, String)>,
+    /// Of the random numbers
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub seed: u64,
+    /// Ask one case again, as a check printed it
+    #[arg(long, value_name = "CASE")]
+    pub replay: Option<String>,
+    /// Threads; as many as the machine has, unless told. The verdicts do not depend on it
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096))]
+    pub threads: Option<u32>,
+    /// A folder of plugins, before those that BIDIR_PLUGINS names; may be given again
+    #[arg(long = "plugins", value_name = "DIR")]
+    pub plugins: Vec<PathBuf>,
     /// As JSON
     #[arg(long)]
     pub json: bool,

@@ -1,6 +1,7 @@
 //! The command line.
 
 mod arguments;
+mod check;
 mod compare;
 mod explain;
 mod interrupt;
@@ -24,6 +25,8 @@ pub(crate) enum Outcome {
     Done,
     /// Done, but part of the input was refused, and said to be: 1.
     Refused,
+    /// What was checked is wrong: 3.
+    Wrong,
     /// Ctrl-C; what was rendered is saved: 130.
     Interrupted,
 }
@@ -44,11 +47,13 @@ pub fn main() -> ExitCode {
         Command::Explain(explain) => explain::run(explain),
         Command::Techniques(techniques) => techniques::run(techniques),
         Command::Compare(compare) => compare::run(compare),
+        Command::Check(check) => check::run(check),
         Command::Plugin(command) => plugin::run(command),
     };
     match outcome {
         Ok(Outcome::Done) => ExitCode::SUCCESS,
         Ok(Outcome::Refused) => ExitCode::from(1),
+        Ok(Outcome::Wrong) => ExitCode::from(3),
         Ok(Outcome::Interrupted) => ExitCode::from(130),
         Err(error) => {
             complain(&error);

@@ -17,7 +17,7 @@ mod plugin;
 mod properties;
 mod sensor;
 mod shape;
-mod suggest;
+pub(crate) mod suggest;
 mod texture;
 mod transform;
 mod value;

@@ -1,7 +1,7 @@
 //! The second half of an error about a name: which one may have been meant, and which ones there are.
 
 /// `did you mean "x"? `, or nothing if no name is close.
-pub(super) fn did_you_mean(name: &str, known: &[&str]) -> String {
+pub(crate) fn did_you_mean(name: &str, known: &[&str]) -> String {
     let lower = name.to_lowercase();
     let distance = |k: &str| strsim::damerau_levenshtein(&lower, &k.to_lowercase());
     match known.iter().min_by_key(|k| distance(k)) {

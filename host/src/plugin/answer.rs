@@ -74,7 +74,7 @@ fn unit([x, y, z]: [f32; 3]) -> Result<Vec3, Flaw> {
 
 /// `bsdf_eval`'s answer.
 #[inline(always)]
-pub(super) fn scatter(out: &EvalOut) -> Result<Scatter, Flaw> {
+pub(crate) fn scatter(out: &EvalOut) -> Result<Scatter, Flaw> {
     let EvalOut { value: [r, g, b], pdf, pdf_rev } = *out;
     if !plain([r, g, b, pdf, pdf_rev]) {
         numbers("the value", out.value, [("pdf", pdf), ("pdf_rev", pdf_rev)])?;
@@ -88,7 +88,7 @@ pub(super) fn scatter(out: &EvalOut) -> Result<Scatter, Flaw> {
 
 /// `bsdf_sample`'s answer to ω_o, of a plugin that has those lobes.
 #[inline(always)]
-pub(super) fn scattered(out: &SampleOut, wo_z: f32, declared: Lobe) -> Result<Option<Scattered>, Flaw> {
+pub(crate) fn scattered(out: &SampleOut, wo_z: f32, declared: Lobe) -> Result<Option<Scattered>, Flaw> {
     if out.lobe == lobe::NONE {
         return Ok(None);
     }
@@ -122,7 +122,7 @@ pub(super) fn scattered(out: &SampleOut, wo_z: f32, declared: Lobe) -> Result<Op
 
 /// `light_eval`'s answer.
 #[inline(always)]
-pub(super) fn profiled(out: &ProfileOut) -> Result<Profiled, Flaw> {
+pub(crate) fn profiled(out: &ProfileOut) -> Result<Profiled, Flaw> {
     let ProfileOut { radiance: [r, g, b], pdf } = *out;
     if !plain([r, g, b, pdf]) {
         numbers("the radiance", out.radiance, [("pdf", pdf)])?;
@@ -136,7 +136,7 @@ pub(super) fn profiled(out: &ProfileOut) -> Result<Profiled, Flaw> {
 
 /// `light_emit`'s answer.
 #[inline(always)]
-pub(super) fn emitted(out: &EmitOut) -> Result<Option<Emitted>, Flaw> {
+pub(crate) fn emitted(out: &EmitOut) -> Result<Option<Emitted>, Flaw> {
     let profiled = profiled(&ProfileOut { radiance: out.radiance, pdf: out.pdf })?;
     if out.pdf == 0.0 {
         return Ok(None);

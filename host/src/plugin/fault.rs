@@ -32,8 +32,13 @@ pub enum Cause {
 
 impl fmt::Display for Fault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}: {}: ", self.file.display(), self.export)?;
-        match &self.cause {
+        write!(f, "{}: {}: {}", self.file.display(), self.export, self.cause)
+    }
+}
+
+impl fmt::Display for Cause {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
             Cause::Trap(what) => write!(f, "{what}"),
             Cause::Endless => write!(f, "one call ran for more than {} ms, and was stopped", super::instance::CALL_LIMIT.as_millis()),
             Cause::Slow => write!(f, "the calls of one tile took more than {} s together", super::instance::TILE_LIMIT.as_secs()),

@@ -116,6 +116,11 @@ impl Instance {
         self.blocks + offset
     }
 
+    /// Of its memory, as large as it is now.
+    pub(super) fn memory_bytes(&self) -> usize {
+        self.memory.data_size(&self.store)
+    }
+
     /// Writes parameters. The place must lie in the host's region.
     #[inline]
     pub(super) fn write(&mut self, address: u32, bytes: &[u8]) {

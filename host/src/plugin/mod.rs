@@ -26,7 +26,7 @@
 //! What can go wrong: a module that is not as it has to be is an error when it is loaded; an answer that cannot be is left out
 //! and counted ([`Sandbox::quarantine`]); a call that traps or does not end is a [`Fault`], after which answers are black.
 
-mod answer;
+pub(crate) mod answer;
 mod engine;
 mod fault;
 mod instance;

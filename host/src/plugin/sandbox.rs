@@ -174,6 +174,11 @@ impl Sandbox {
         });
     }
 
+    /// How large the memory of a shader's instance is; `None` after a fault.
+    pub fn memory_bytes(&self, id: ShaderId) -> Option<usize> {
+        self.ask(id, |instance, _| Ok(instance.memory_bytes()))
+    }
+
     /// Calls into a shader's instance.
     #[inline]
     fn ask<T>(&self, id: ShaderId, question: impl FnOnce(&mut Instance, u32) -> std::result::Result<T, Failure>) -> Option<T> {

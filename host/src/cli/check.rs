@@ -1,0 +1,94 @@
+//! `bidir check`.
+
+use std::{
+    io::{self, Write},
+    num::NonZero,
+    path::Path,
+    sync::Arc,
+    thread,
+};
+
+use serde::Serialize;
+
+use crate::{
+    check::{self, Case, Plugin, Report, Settings, builtin},
+    cli::{Outcome, arguments::Check},
+    error::{Error, Result},
+    load::suggest::did_you_mean,
+    plugin::{Engine, Kind, Library, Module, Value, is_module},
+};
+
+/// What there is to say of a check.
+#[derive(Debug, Serialize)]
+struct Checked<'a> {
+    subject: &'a str,
+    version: &'static str,
+    #[serde(flatten)]
+    report: Report,
+}
+
+pub(super) fn run(arguments: &Check) -> Result<Outcome> {
+    let module = Arc::new(module(arguments)?);
+    let given = arguments.set.iter().map(|(name, value)| (name.as_str(), value.as_str()));
+    let report = match &arguments.replay {
+        Some(text) => replay(&module, text)?,
+        None => checked(&module, &check::values(module.manifest(), given)?, arguments)?,
+    };
+    let passed = report.passed;
+    let words = if arguments.json {
+        let checked = Checked { subject: &arguments.subject, version: env!("CARGO_PKG_VERSION"), report };
+        serde_json::to_string_pretty(&checked)
+            .map_err(|error| Error::new(format!("no JSON: {error}"), "this is a bug; please report it"))?
+    } else {
+        report.to_string()
+    };
+    // Who stops reading halfway (`| head`) has read enough.
+    let _ = writeln!(io::stdout(), "{words}");
+    Ok(if passed { Outcome::Done } else { Outcome::Wrong })
+}
+
+/// The module of a file, of a built-in, or of a type that is found as a scene's is.
+fn module(arguments: &Check) -> Result<Module> {
+    let name = arguments.subject.as_str();
+    if let Some((_, bytes)) = builtin::MODULES.iter().find(|(known, _)| *known == name) {
+        return Module::from_bytes(&Engine::new()?, Path::new(name), bytes, None);
+    }
+    if let Some((_, why)) = builtin::OTHERS.iter().find(|(known, _)| *known == name) {
+        return Err(Error::new(format!("\"{name}\" cannot be checked alone"), *why));
+    }
+    if is_module(name) && Path::new(name).is_file() {
+        return Module::load(&Engine::new()?, Path::new(name));
+    }
+    match Library::with_environment(arguments.plugins.clone()).find(name, &[]) {
+        Some(file) => Module::load(&Engine::new()?, &file),
+        None if is_module(name) => Module::load(&Engine::new()?, Path::new(name)),
+        None => {
+            let known: Vec<_> = builtin::MODULES.iter().map(|(name, _)| *name).collect();
+            let remedy =
+                format!("{}name a .wasm file, a folder with --plugins, or one of {}", did_you_mean(name, &known), known.join(", "));
+            Err(Error::new(format!("\"{name}\" is no built-in, and no plugin of that name is found"), remedy))
+        }
+    }
+}
+
+fn checked(module: &Arc<Module>, given: &[(String, Value)], arguments: &Check) -> Result<Report> {
+    let threads = arguments.threads.map(|threads| threads as usize);
+    let threads = threads.unwrap_or_else(|| thread::available_parallelism().map_or(1, NonZero::get));
+    let settings = Settings { seed: arguments.seed, threads, effort: None };
+    let plugin = Plugin::new(module, given, arguments.seed)?;
+    Ok(match module.manifest().kind {
+        Kind::Bsdf => check::bsdfs(&plugin, &settings),
+        Kind::Light => check::lights(&plugin, &settings),
+    })
+}
+
+fn replay(module: &Arc<Module>, text: &str) -> Result<Report> {
+    let case: Case = text.parse().map_err(|why| Error::new(format!("the case {why}"), "copy one from what a check printed"))?;
+    let parts = case.parameters.split('/').filter(|part| !part.is_empty());
+    let given: Vec<_> = parts.map(|part| part.split_once('=').unwrap_or((part, ""))).collect();
+    let plugin = Plugin::with(module, &check::values(module.manifest(), given)?)?;
+    match module.manifest().kind {
+        Kind::Bsdf => check::replay_bsdf(&plugin, &case),
+        Kind::Light => check::replay_light(&plugin, &case),
+    }
+}
