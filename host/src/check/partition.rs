@@ -12,7 +12,14 @@ const CELLS: usize = 256;
 const LEAST: usize = 16;
 
 /// How often a direction is one from anywhere.
-const ANYWHERE: f64 = 0.2;
+const ANYWHERE: f64 = 0.1;
+
+/// How often it is one about the centre, at any order of magnitude away from it: where a narrow lobe has a part that no sample reaches.
+const ABOUT: f64 = 0.2;
+
+/// Directions about the centre begin between these heights: f32 tells nearer ones apart no more.
+const NEAREST: f64 = 1e-10;
+const FARTHEST: f64 = 0.5;
 
 /// From here on, a cell's outer height over its inner one, directions crowd towards its inner edge.
 const LONG: f64 = 4.0;
@@ -24,6 +31,8 @@ pub(super) struct Partition {
     chart: Chart,
     nodes: Vec<Node>,
     cells: Vec<Cell>,
+    /// The least height of directions about the centre.
+    nearest: f64,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -70,11 +79,12 @@ impl Partition {
     pub(super) fn new(centre: Vec3, samples: &[Vec3]) -> Self {
         let chart = Chart::about(centre);
         let mut places: Vec<_> = samples.iter().map(|w| chart.place(*w)).collect();
-        let mut partition = Self { chart, nodes: Vec::new(), cells: Vec::new() };
+        let mut partition = Self { chart, nodes: Vec::new(), cells: Vec::new(), nearest: FARTHEST };
         let all = places.len();
         partition.cut(&mut places, [0.0; 2], [1.0; 2], 0, (all / CELLS).max(LEAST));
         let mut before = 0.0;
         for cell in &mut partition.cells {
+            partition.nearest = partition.nearest.min(cell.high[0]).max(NEAREST);
             cell.share /= all.max(1) as f64;
             cell.before = before;
             before += cell.share;
@@ -120,8 +130,11 @@ impl Partition {
                 Node::Leaf(cell) => {
                     let own = self.cells[cell].density(place[0].max(f64::MIN_POSITIVE));
                     // Without samples there is but one cell, and it has no share.
-                    let anywhere = if self.cells[cell].share == 0.0 && self.cells.len() == 1 { 1.0 } else { ANYWHERE };
-                    return (cell, ((1.0 - anywhere) * own + anywhere) / STERADIANS);
+                    if self.cells[cell].share == 0.0 && self.cells.len() == 1 {
+                        return (cell, 1.0 / STERADIANS);
+                    }
+                    let about = if place[0] < self.nearest { 0.0 } else { 1.0 / (place[0] * -self.nearest.ln()) };
+                    return (cell, ((1.0 - ANYWHERE - ABOUT) * own + ABOUT * about + ANYWHERE) / STERADIANS);
                 }
             }
         }
@@ -129,10 +142,14 @@ impl Partition {
 
     pub(super) fn pick(&self, dice: &mut Dice) -> Vec3 {
         let (choice, u, v) = (dice.exact(), dice.exact(), dice.exact());
-        if choice < ANYWHERE {
+        let empty = self.cells.len() == 1 && self.cells[0].share == 0.0;
+        if choice < ANYWHERE || empty {
             return self.chart.direction([u, v]);
         }
-        let at = (choice - ANYWHERE) / (1.0 - ANYWHERE);
+        if choice < ANYWHERE + ABOUT {
+            return self.chart.direction([self.nearest.powf(1.0 - u), v]);
+        }
+        let at = (choice - ANYWHERE - ABOUT) / (1.0 - ANYWHERE - ABOUT);
         let cell = self.cells.partition_point(|cell| cell.before <= at).max(1) - 1;
         self.chart.direction(self.cells[cell].place(u, v))
     }

@@ -88,7 +88,8 @@ thread_local! {
 }
 
 /// How rays meet triangles.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum, serde::Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Triangles {
     /// No ray passes between triangles that share an edge or a corner.
     #[default]
@@ -236,9 +237,14 @@ impl Bvh {
         }
     }
 
-    /// The same tree with triangles met in another way.
+    /// The same tree with triangles met in another way, those in its instances too.
     pub fn with_triangles(self, triangles: Triangles) -> Self {
         Self { triangles, ..self }
+    }
+
+    /// How rays meet triangles.
+    pub fn triangles(&self) -> Triangles {
+        self.triangles
     }
 
     /// The same tree without the registers that only some machines have. Answers are the same, bit for bit.

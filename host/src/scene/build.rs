@@ -44,7 +44,7 @@ impl Scene {
     /// The scene of a description in which something has changed. The trees of groups whose [`Arc`] has not, nor that of any
     /// group within them, are not built again but shared; the outermost tree is built, with what stands in no group.
     pub fn rebuilt(&self, description: &Description) -> Result<Self> {
-        Self::build(description, Some(self))
+        Ok(Self::build(description, Some(self))?.with_triangles(self.geometry.triangles()))
     }
 
     fn build(description: &Description, before: Option<&Self>) -> Result<Self> {

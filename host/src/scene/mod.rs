@@ -22,7 +22,7 @@ use glam::DVec3;
 
 use crate::{
     plugin::Roster,
-    rays::{BuildStats, Bvh, Geometry as _, RayHit},
+    rays::{BuildStats, Bvh, Geometry as _, RayHit, Triangles},
 };
 use camera::SceneCamera;
 use choice::Lights;
@@ -50,6 +50,11 @@ pub struct Scene {
 }
 
 impl Scene {
+    /// The same scene with triangles met in another way.
+    pub fn with_triangles(self, triangles: Triangles) -> Self {
+        Self { geometry: self.geometry.with_triangles(triangles), ..self }
+    }
+
     /// How many triangles and shapes without area were dropped.
     pub fn degenerate(&self) -> usize {
         self.degenerate

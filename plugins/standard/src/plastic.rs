@@ -92,11 +92,9 @@ impl Bsdf for Plastic {
         let coat = self.coat_part();
         let (out, back) = (self.shares(wo.z, coat), self.shares(wi.z, coat));
         // So close to grazing that the coat has every sample, the base is never sampled, and has no value.
-        if !(out.specular < 1.0) {
-            return Scatter::NONE;
-        }
+        let through = if out.specular < 1.0 { (1.0 - out.reflectance) * (1.0 - back.reflectance) } else { 0.0 };
         Scatter {
-            value: self.base() * ((1.0 - out.reflectance) * (1.0 - back.reflectance) * wi.z * INV_PI),
+            value: self.base() * (through * wi.z * INV_PI),
             pdf: PerSolidAngle((1.0 - out.specular) * cosine_hemisphere_pdf(wi.z)),
             pdf_rev: PerSolidAngle((1.0 - back.specular) * cosine_hemisphere_pdf(wo.z)),
         }
