@@ -12,7 +12,7 @@ use crate::check::dice::Dice;
 const BOUNCES: usize = 8;
 
 /// A sample brighter than this is held to it: what is left of it would be a speck.
-const SPECK: f32 = 40.0;
+const SPECK: f32 = 8.0;
 
 const CENTRE: Vec3 = Vec3::new(0.0, 0.0, 1.0);
 const EYE: Vec3 = Vec3::new(0.0, -6.0, 2.1);
@@ -22,7 +22,7 @@ const EXTENT: f32 = 0.205;
 
 /// Half the sun's width as 1 − cos (3.5°), and what it sheds on what faces it.
 const SUN_WIDTH: f32 = 1.865e-3;
-const SUN_POWER: f32 = 1.7;
+const SUN_POWER: f32 = 2.1;
 
 /// Dimensions of a walk's first steps: pixel, BSDF, sun, the floor's sun.
 const DIMENSIONS: usize = 9;
@@ -49,7 +49,7 @@ struct Place {
 
 /// A square picture, as a data URI. `clear` balls have a lighter shadow.
 pub(super) fn picture(bsdf: &dyn Bsdf, clear: bool, side: usize, samples: usize) -> String {
-    let towards_sun = Vec3::new(-0.52, -0.55, 0.66).normalize();
+    let towards_sun = Vec3::new(-0.66, -0.42, 0.62).normalize();
     let sun_pdf = warp::cone_pdf(SUN_WIDTH);
     let place = Place {
         sun: Frame::from_z(towards_sun),
@@ -65,7 +65,8 @@ pub(super) fn picture(bsdf: &dyn Bsdf, clear: bool, side: usize, samples: usize)
         let (mut sum, mut dice) = ([0.0; 3], Dice::new(at as u64));
         let shift: [f64; DIMENSIONS] = std::array::from_fn(|_| dice.exact());
         for sample in 0..samples {
-            let u: [f32; DIMENSIONS] = std::array::from_fn(|i| ((shift[i] + sample as f64 * steps[i]).fract() as f32).min(1.0 - f32::EPSILON / 2.0));
+            let u: [f32; DIMENSIONS] =
+                std::array::from_fn(|i| ((shift[i] + sample as f64 * steps[i]).fract() as f32).min(1.0 - f32::EPSILON / 2.0));
             let [x, y, ..] = u;
             let across = |pixel: usize, u: f32| EXTENT * (2.0 * (pixel as f32 + u) / side as f32 - 1.0);
             let towards = (forward + right * across(at % side, x) - up * across(at / side, y)).normalize();
@@ -134,14 +135,14 @@ impl Place {
 
     /// What comes from beside the ball; `found` is the weight of meeting the sun.
     fn around(&self, from: Vec3, towards: Vec3, u: [f32; 2], found: f32) -> Colour {
-        let haze = [0.80, 0.86, 0.93];
+        let haze = [0.56, 0.61, 0.68];
         let mix = |a: Colour, b: Colour, share: f32| std::array::from_fn(|band| a[band] + share * (b[band] - a[band]));
         if towards.z < -1e-4 {
             let far = from.z / -towards.z;
             let floor = from + towards * far;
             return mix(self.floor(floor, u), haze, 1.0 - (-(far / 26.0).powi(2)).exp());
         }
-        let sky = mix(haze, [0.20, 0.42, 0.82], towards.z.max(0.0).powf(0.55));
+        let sky = mix(haze, [0.12, 0.26, 0.56], towards.z.max(0.0).powf(0.55));
         let mut seen = sky;
         if 1.0 - towards.dot(self.sun.z) < SUN_WIDTH {
             add(&mut seen, self.sun_radiance, found);
@@ -158,8 +159,7 @@ impl Place {
         let distance = (CENTRE - point).length_squared();
         let covered = (CENTRE.z / (distance * distance.sqrt())).min(1.0) * (1.0 - self.clear);
         let sunlight = SUN_POWER * sun.z * shadow / std::f32::consts::PI;
-        let light =
-            [0.95 * sunlight + 0.52 * (1.0 - covered), 0.90 * sunlight + 0.62 * (1.0 - covered), 0.82 * sunlight + 0.78 * (1.0 - covered)];
+        let light = [sunlight + 0.34 * (1.0 - covered), 0.93 * sunlight + 0.41 * (1.0 - covered), 0.82 * sunlight + 0.53 * (1.0 - covered)];
         times(albedo, light)
     }
 }

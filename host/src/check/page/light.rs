@@ -18,11 +18,11 @@ use crate::check::{
 };
 
 pub(super) const LEGEND: &str = "Each row has one set of parameters. The polar plots show the radiance (of a point light: the intensity) that leaves \
-in two planes through the axis z. The discs are the hemispheres in equal area, about +z and under it about −z, seen from +z: what leaves, in \
+in three planes through the axis z. The discs are the hemispheres in equal area, about +z and under it about −z, seen from +z: what leaves, in \
 colours with the brightest at white; the pdf as it is told; and the samples as they fall.";
 
 /// Planes through the axis, by their azimuth in degrees.
-const PLANES: [f64; 2] = [0.0, 90.0];
+const PLANES: [f64; 3] = [0.0, 45.0, 90.0];
 
 const SAMPLES: usize = 1 << 18;
 const CLOSELY: usize = 256;
@@ -61,7 +61,7 @@ pub(super) fn row(lamps: &dyn Lamps, set: usize, less: u32) -> String {
     // Two thirds of white, before the shoulder.
     let colour = |at: usize| radiance[at].map(|value| toned(2.5 * value / most.max(f64::MIN_POSITIVE)));
     let below = polars.iter().any(|polar| polar.below) || map.halves()[1];
-    let scale = Scale::of(polars.iter().flat_map(|polar| polar.values.iter().flat_map(|(_, bands)| *bands)));
+    let scale = Scale::common(polars.iter());
     let figures: String = polars
         .into_iter()
         .zip(PLANES)
@@ -74,11 +74,11 @@ pub(super) fn row(lamps: &dyn Lamps, set: usize, less: u32) -> String {
         format!("<div class=\"maps\"><span><img alt=\"radiance over the sphere\" src=\"{}\"/>radiance</span></div>", disc(below, colour));
     let notes: Vec<_> = trouble(&*telling).into_iter().chain(trouble(&*drawing)).collect();
     let place = if lamps.on_surfaces() { "; at uv = (0.5, 0.5)" } else { "" };
-    let words = scale.words(if lamps.on_surfaces() { "W/(m² sr)" } else { "" });
+    let words = scale.words(if lamps.on_surfaces() { " W/(m² sr)" } else { "" });
     format!(
-        "<section class=\"set\">\n{}<p class=\"aside\">{words}{place}</p>\n<div class=\"figures\">\n{figures}<figure>{seen}</figure>\n<figure>{}</figure>\n</div>\n</section>\n",
+        "<section class=\"set\">\n{}<p class=\"aside\">{words}{place}</p>\n<div class=\"figures\">\n{figures}<figure>{}</figure>\n</div>\n</section>\n",
         heading(&lamps.sets()[set], &notes),
-        map.figures(below)
+        map.figures(below, &seen)
     )
 }
 

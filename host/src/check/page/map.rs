@@ -13,7 +13,7 @@ use crate::check::{
 const SIDE: usize = 64;
 
 /// A pixel has the density of so many places along each of its sides.
-const FINE: usize = 3;
+const FINE: usize = 4;
 
 /// Where the density is more than this many times the uniform one, random places are taken rather than those.
 const NARROW: f64 = 60.0;
@@ -101,20 +101,26 @@ impl Map {
         [some(0), some(SIDE * SIDE)]
     }
 
-    /// Both, as figures; the lower halves only where there is a `below`.
-    pub(super) fn figures(&self, below: bool) -> String {
+    /// Both, as figures; the lower halves only where there is a `below`; `before` stands before them.
+    pub(super) fn figures(&self, below: bool, before: &str) -> String {
         if self.halves() == [false; 2] {
-            return "<p class=\"aside\">no smooth lobe from here</p>\n".to_owned();
+            return format!("<div class=\"maps\">{before}</div>\n<p class=\"aside\">no pdf, and no samples that have one</p>\n");
         }
         // Samples scatter about the density; so its own largest counts.
         let most = self.claimed.iter().chain(self.sampled.iter().filter(|_| self.claimed.iter().all(|d| *d <= 0.0)));
         let scale = Scale::of(most.copied());
+        // Samples scatter; what lies above the densest is to be told from it.
+        let scale = Scale { most: if scale.logarithmic { 1.5 } else { 1.15 } * scale.most, ..scale };
         let figure = |densities: &[f64], name: &str| {
             let colour = |at: usize| warm(scale.place(densities[at]));
             format!("<span><img alt=\"{name} over the sphere\" src=\"{}\"/>{name}</span>\n", disc(below, colour))
         };
         let words = if scale.logarithmic { "brighter is denser, in logarithms" } else { "brighter is denser" };
-        format!("<div class=\"maps\" title=\"{words}\">\n{}{}</div>\n", figure(&self.claimed, "pdf"), figure(&self.sampled, "samples"))
+        format!(
+            "<div class=\"maps\" title=\"{words}\">\n{before}{}{}</div>\n",
+            figure(&self.claimed, "pdf"),
+            figure(&self.sampled, "samples")
+        )
     }
 }
 

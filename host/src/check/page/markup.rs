@@ -30,11 +30,11 @@ pub(super) fn short(x: f64) -> String {
         _ if !(1e-3..1e4).contains(&size) => {
             let text = format!("{x:.1e}");
             let (digits, exponent) = text.split_once('e').unwrap_or((&text, "0"));
-            format!("{digits}·10<sup>{}</sup>", exponent.replace('-', "−"))
+            format!("{digits}·10<sup>{exponent}</sup>").replace('-', "−")
         }
         _ => {
             let digits = (2.0 - size.log10().floor()).clamp(0.0, 5.0) as usize;
-            let text = format!("{x:.digits$}");
+            let text = format!("{x:.digits$}").replace('-', "−");
             if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
         }
     }
@@ -79,8 +79,15 @@ mod tests {
 
     #[test]
     fn numbers_have_three_digits() {
-        for (x, text) in [(0.0, "0"), (0.318_31, "0.318"), (12.3456, "12.3"), (1.0, "1"), (250.0, "250"), (2.5e-7, "2.5·10<sup>−7</sup>")]
-        {
+        for (x, text) in [
+            (0.0, "0"),
+            (0.123_41, "0.123"),
+            (12.3456, "12.3"),
+            (1.0, "1"),
+            (250.0, "250"),
+            (-0.5, "−0.5"),
+            (2.5e-7, "2.5·10<sup>−7</sup>"),
+        ] {
             assert_eq!(short(x), text);
         }
     }

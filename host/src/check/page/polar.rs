@@ -9,7 +9,7 @@ const RADIUS: f64 = 100.0;
 const DECADES: f64 = 4.0;
 
 /// Lobes whose peak is more than this many times their mean are drawn in logarithms.
-const PEAKED: f64 = 12.0;
+const PEAKED: f64 = 10.0;
 
 /// How values become radii and colours.
 #[derive(Clone, Copy, Debug)]
@@ -20,13 +20,25 @@ pub(super) struct Scale {
 
 impl Scale {
     pub(super) fn of(values: impl Iterator<Item = f64>) -> Self {
-        let (mut most, mut sum, mut count) = (0.0_f64, 0.0, 0.0);
-        for value in values.filter(|value| *value > 0.0) {
+        Self::weighed(values.map(|value| (value, 1.0)))
+    }
+
+    /// Of plots that share it, each angle weighed by how much of the circle is about it.
+    pub(super) fn common<'a>(plots: impl Iterator<Item = &'a Polar>) -> Self {
+        Self::weighed(plots.flat_map(|plot| {
+            let widths = plot.values.windows(2).map(|pair| pair[1].0 - pair[0].0).chain([0.0]);
+            plot.values.iter().zip(widths).flat_map(|((_, bands), width)| bands.map(|value| (value, width)))
+        }))
+    }
+
+    fn weighed(values: impl Iterator<Item = (f64, f64)>) -> Self {
+        let (mut most, mut sum, mut extent) = (0.0_f64, 0.0, 0.0);
+        for (value, width) in values.filter(|(value, _)| *value > 0.0) {
             most = most.max(value);
-            sum += value;
-            count += 1.0;
+            sum += value * width;
+            extent += width;
         }
-        Self { most, logarithmic: most * count > PEAKED * sum }
+        Self { most, logarithmic: most * extent > PEAKED * sum }
     }
 
     /// In 0 … 1.
@@ -38,15 +50,15 @@ impl Scale {
         if self.logarithmic { (1.0 + share.log10() / DECADES).clamp(0.0, 1.0) } else { share.min(1.0) }
     }
 
-    /// What the outermost ring means.
+    /// What the outermost ring means; a unit begins with its space.
     pub(super) fn words(&self, unit: &str) -> String {
         let most = short(self.most);
         if self.most <= 0.0 {
-            "nothing smooth".to_owned()
+            "nothing smooth there to draw".to_owned()
         } else if self.logarithmic {
-            format!("outer ring {most} {unit}, each ring inwards a tenth")
+            format!("outer ring {most}{unit}, each ring inwards a tenth")
         } else {
-            format!("outer ring {most} {unit}, linear")
+            format!("outer ring {most}{unit}, linear")
         }
     }
 }
@@ -142,7 +154,9 @@ fn head((x, y): (f64, f64), angle: f64, class: &str) -> String {
 
 fn drawn(arrow: &Arrow) -> String {
     let length = 0.35 + 0.5 * arrow.chance.clamp(0.0, 1.0);
-    let ((x, y), (tx, ty)) = (at(arrow.angle, length), at(arrow.angle, length + 0.17));
+    // Beside the tip, towards the normal but for those along it.
+    let aside = if arrow.angle.abs() > 0.6 { -0.3 * arrow.angle.signum() } else { 0.3 };
+    let ((x, y), (tx, ty)) = (at(arrow.angle, length), at(arrow.angle + aside, length + 0.12));
     let words = match 100.0 * arrow.chance {
         percent if percent >= 9.95 => format!("{percent:.0} %"),
         percent => format!("{percent:.1} %"),

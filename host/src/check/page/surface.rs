@@ -18,7 +18,7 @@ use crate::check::{
 
 pub(super) const LEGEND: &str = "Each row has one set of parameters: a ball of it under a sky with a sun, what it scatters in all and how much the weight \
 of a sample varies, and what it scatters from 0°, 45° and 75°. The polar plots show f · |cos θ| in the plane of incidence for radiance, per \
-steradian; light that is let through goes below the line. A dashed line is where ω_o points to, an arrow is a lobe into one direction with its \
+steradian; light that is let through goes below the line. The walk comes in along the dashed line, ω_o; an arrow is a lobe into one direction with its \
 chance. The discs are the hemispheres in equal area, above and below the surface: the pdf as it is told, and the samples as they fall.";
 
 /// ω_o to draw, in degrees from the normal.
@@ -94,15 +94,15 @@ pub(super) fn row(surfaces: &dyn Surfaces, set: usize, less: u32) -> String {
         notes.extend(trouble(&*telling).into_iter().chain(trouble(&*drawing)));
     }
     let below = views.iter().any(|(_, polar, map)| polar.below || map.halves()[1]);
-    let scale = Scale::of(views.iter().flat_map(|(_, polar, _)| polar.values.iter().flat_map(|(_, bands)| *bands)));
+    let scale = Scale::common(views.iter().map(|(_, polar, _)| polar));
     let figures: String = views
         .into_iter()
         .map(|(degrees, polar, map)| {
             let plot = Polar { below, ..polar }.svg(&scale);
-            format!("<figure>{plot}{}<figcaption>from {degrees}°</figcaption></figure>\n", map.figures(below))
+            format!("<figure>{plot}{}<figcaption>from {degrees}°</figcaption></figure>\n", map.figures(below, ""))
         })
         .collect();
-    let words = scale.words("sr<sup>−1</sup>");
+    let words = scale.words(" sr<sup>−1</sup>");
     format!(
         "<section class=\"set\">\n{}<p class=\"aside\">{words}</p>\n<div class=\"figures\">\n<figure>{ball}{curve}</figure>\n{figures}</div>\n</section>\n",
         heading(&surfaces.sets()[set], &notes)
