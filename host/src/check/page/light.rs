@@ -58,7 +58,7 @@ pub(super) fn row(lamps: &dyn Lamps, set: usize, less: u32) -> String {
     let map = Map::of(&said, &drawn, SAMPLES >> less, &mut dice);
     let radiance = each(|w| said.look(w).value);
     let most = radiance.iter().flatten().copied().fold(0.0, f64::max);
-    // Two thirds of white, before the shoulder.
+    // The brightest is nearly white.
     let colour = |at: usize| radiance[at].map(|value| toned(2.5 * value / most.max(f64::MIN_POSITIVE)));
     let below = polars.iter().any(|polar| polar.below) || map.halves()[1];
     let scale = Scale::common(polars.iter());
@@ -70,8 +70,11 @@ pub(super) fn row(lamps: &dyn Lamps, set: usize, less: u32) -> String {
             format!("<figure>{plot}<figcaption>in the plane at azimuth {azimuth}°</figcaption></figure>\n")
         })
         .collect();
-    let seen =
-        format!("<div class=\"maps\"><span><img alt=\"radiance over the sphere\" src=\"{}\"/>radiance</span></div>", disc(below, colour));
+    let seen = format!(
+        "<span><img alt=\"radiance over the sphere\" src=\"{}\"/>radiance</span>
+",
+        disc(below, colour)
+    );
     let notes: Vec<_> = trouble(&*telling).into_iter().chain(trouble(&*drawing)).collect();
     let place = if lamps.on_surfaces() { "; at uv = (0.5, 0.5)" } else { "" };
     let words = scale.words(if lamps.on_surfaces() { " W/(m² sr)" } else { "" });
