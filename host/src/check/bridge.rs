@@ -145,7 +145,7 @@ fn nothing<S: Scatterer>(_: &S) -> f64 {
 }
 
 /// The known density, about the densest of so many samples.
-fn learn(subject: &impl Scatterer, samples: usize, dice: &mut Dice) -> Partition {
+pub(super) fn learn(subject: &impl Scatterer, samples: usize, dice: &mut Dice) -> Partition {
     let found: Vec<_> = (0..samples).filter_map(|_| subject.draw(dice).direction).collect();
     let density = |w: &Vec3| subject.look(*w).pdf;
     let some = found.iter().take(256);

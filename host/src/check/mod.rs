@@ -46,6 +46,8 @@ mod crew;
 mod dice;
 mod lamp;
 mod ledger;
+#[cfg(feature = "renderer")]
+pub mod page;
 mod parameters;
 mod partition;
 mod report;

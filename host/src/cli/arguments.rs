@@ -171,6 +171,9 @@ pub struct Check {
     /// A folder of plugins, before those that BIDIR_PLUGINS names; may be given again
     #[arg(long = "plugins", value_name = "DIR")]
     pub plugins: Vec<PathBuf>,
+    /// Write a page with the verdicts, plots and pictures, index.html, into this folder; it is made if it is not there
+    #[arg(long, value_name = "DIR")]
+    pub report: Option<PathBuf>,
     /// As JSON
     #[arg(long)]
     pub json: bool,

@@ -1,5 +1,7 @@
 //! `bidir check`.
 
+mod page;
+
 use std::{
     io::{self, Write},
     num::NonZero,
@@ -29,9 +31,10 @@ struct Checked<'a> {
 
 pub(super) fn run(arguments: &Check) -> Result<Outcome> {
     let module = Arc::new(module(arguments)?);
+    page::prepare(arguments)?;
     let given = arguments.set.iter().map(|(name, value)| (name.as_str(), value.as_str()));
     let report = match &arguments.replay {
-        Some(text) => replay(&module, text)?,
+        Some(text) => replay(&module, text, arguments)?,
         None => checked(&module, &check::values(module.manifest(), given)?, arguments)?,
     };
     let passed = report.passed;
@@ -72,23 +75,32 @@ fn module(arguments: &Check) -> Result<Module> {
 }
 
 fn checked(module: &Arc<Module>, given: &[(String, Value)], arguments: &Check) -> Result<Report> {
-    let threads = arguments.threads.map(|threads| threads as usize);
-    let threads = threads.unwrap_or_else(|| thread::available_parallelism().map_or(1, NonZero::get));
-    let settings = Settings { seed: arguments.seed, threads, effort: None };
+    let settings = Settings { seed: arguments.seed, threads: threads(arguments), effort: None };
     let plugin = Plugin::new(module, given, arguments.seed)?;
-    Ok(match module.manifest().kind {
+    let kind = module.manifest().kind;
+    let report = match kind {
         Kind::Bsdf => check::bsdfs(&plugin, &settings),
         Kind::Light => check::lights(&plugin, &settings),
-    })
+    };
+    page::write(&plugin, kind, &report, arguments, settings.threads)?;
+    Ok(report)
 }
 
-fn replay(module: &Arc<Module>, text: &str) -> Result<Report> {
+fn threads(arguments: &Check) -> usize {
+    let threads = arguments.threads.map(|threads| threads as usize);
+    threads.unwrap_or_else(|| thread::available_parallelism().map_or(1, NonZero::get))
+}
+
+fn replay(module: &Arc<Module>, text: &str, arguments: &Check) -> Result<Report> {
     let case: Case = text.parse().map_err(|why| Error::new(format!("the case {why}"), "copy one from what a check printed"))?;
     let parts = case.parameters.split('/').filter(|part| !part.is_empty());
     let given: Vec<_> = parts.map(|part| part.split_once('=').unwrap_or((part, ""))).collect();
     let plugin = Plugin::with(module, &check::values(module.manifest(), given)?)?;
-    match module.manifest().kind {
+    let kind = module.manifest().kind;
+    let report = match kind {
         Kind::Bsdf => check::replay_bsdf(&plugin, &case),
         Kind::Light => check::replay_light(&plugin, &case),
-    }
+    }?;
+    page::write(&plugin, kind, &report, arguments, threads(arguments))?;
+    Ok(report)
 }
