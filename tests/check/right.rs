@@ -31,13 +31,13 @@ fn passes(engine: &Engine, file: &Path, seeds: std::ops::Range<u64>, effort: u32
     }
 }
 
-/// More seeds with `BIDIR_CHECK_SEEDS`.
+/// More seeds with `BIDIR_CHECK_SEEDS`. With few samples what is right passes no sooner: bounds follow their number.
 #[test]
 fn every_committed_module_passes() {
     let engine = Engine::new().expect("an engine");
     let seeds = std::env::var("BIDIR_CHECK_SEEDS").ok().and_then(|seeds| seeds.parse().ok()).unwrap_or(1);
     for file in modules(&prebuilt()).expect("a folder") {
-        passes(&engine, &file, 0..seeds, 12);
+        passes(&engine, &file, 0..seeds, 10);
     }
 }
 
