@@ -281,7 +281,8 @@ mod tests {
         fn look(&self, w: Vec3) -> Claim {
             let sin = f64::from(w.x).hypot(f64::from(w.y));
             let opening = f64::from(self.opening);
-            let PerSolidAngle(pdf) = PerSolidAngle(if sin * sin < opening * (2.0 - opening) { cone_pdf(self.opening) } else { 0.0 });
+            let PerSolidAngle(pdf) =
+                PerSolidAngle(if w.z > 0.0 && sin * sin < opening * (2.0 - opening) { cone_pdf(self.opening) } else { 0.0 });
             let pdf = f64::from(pdf);
             Claim { pdf: pdf * self.pdf, value: [0.5 * pdf * self.value; 3] }
         }
@@ -310,7 +311,7 @@ mod tests {
             assert!(off.mass_off.found.abs() > 1.5 * off.mass_off.bound && (off.mass - 1.03).abs() < 5e-3, "{opening}: {off:?}");
             let off = found(&Cone { opening, pdf: 1.0, value: 1.03, crowd: 0.0 }, 1 << 17);
             assert!(off.claimed_off.found.abs() > 1.5 * off.claimed_off.bound, "{opening}: {off:?}");
-            let crowded = found(&Cone { opening, pdf: 1.0, value: 1.0, crowd: 0.05 }, 1 << 17);
+            let crowded = found(&Cone { opening, pdf: 1.0, value: 1.0, crowd: 0.2 }, 1 << 17);
             assert!(crowded.shape.expect("cells").sigmas > 12.0, "{opening}: {crowded:?}");
         }
     }

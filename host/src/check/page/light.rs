@@ -24,7 +24,7 @@ colours with the brightest at white; the pdf as it is told; and the samples as t
 /// Planes through the axis, by their azimuth in degrees.
 const PLANES: [f64; 3] = [0.0, 45.0, 90.0];
 
-const SAMPLES: usize = 1 << 18;
+const SAMPLES: usize = 1 << 17;
 const CLOSELY: usize = 256;
 
 /// A profile at one place.

@@ -103,7 +103,7 @@ fn page(report: &Report, subject: Subject<'_>, picture: &str, rows: &[String], l
 <header>
 <div>
 <p class="kind">{kind}</p>
-<h1>{name}</h1>
+<h1>{heading}</h1>
 <p class="headline {outcome}">{headline}</p>
 {summary}
 </div>
@@ -114,13 +114,15 @@ fn page(report: &Report, subject: Subject<'_>, picture: &str, rows: &[String], l
 <h2>Parameters</h2>
 <p class="legend">{legend}</p>
 {rows}</main>
-<footer>bidir {version}, seed {seed}, {sets} sets of parameters, 2<sup>{effort}</sup> samples in each piece</footer>
+<footer>bidir {version}, seed {seed}, {sets} {word} of parameters, 2<sup>{effort}</sup> samples in each piece</footer>
 </body>
 </html>
 "#,
         kind = if report.kind == "light" { "Light" } else { "BSDF" },
         seed = report.seed,
+        heading = name.replace('/', "/<wbr/>"),
         sets = report.sets,
+        word = if report.sets == 1 { "set" } else { "sets" },
         effort = report.effort,
     )
 }

@@ -5,8 +5,8 @@ use super::markup::short;
 /// The circle's radius, in units of the drawing.
 const RADIUS: f64 = 100.0;
 
-/// So many factors of 10 below the largest, a logarithmic plot has its centre.
-const DECADES: f64 = 4.0;
+/// So many factors of 10 below the largest, a logarithmic plot has its centre; the second where the first would leave out most of it.
+const DECADES: [f64; 2] = [4.0, 8.0];
 
 /// Lobes whose peak is more than this many times their mean are drawn in logarithms.
 const PEAKED: f64 = 10.0;
@@ -16,6 +16,7 @@ const PEAKED: f64 = 10.0;
 pub(super) struct Scale {
     pub(super) most: f64,
     pub(super) logarithmic: bool,
+    pub(super) decades: f64,
 }
 
 impl Scale {
@@ -32,13 +33,15 @@ impl Scale {
     }
 
     fn weighed(values: impl Iterator<Item = (f64, f64)>) -> Self {
-        let (mut most, mut sum, mut extent) = (0.0_f64, 0.0, 0.0);
-        for (value, width) in values.filter(|(value, _)| *value > 0.0) {
-            most = most.max(value);
-            sum += value * width;
-            extent += width;
-        }
-        Self { most, logarithmic: most * extent > PEAKED * sum }
+        let values: Vec<_> = values.filter(|(value, _)| *value > 0.0).collect();
+        let most = values.iter().map(|(value, _)| *value).fold(0.0, f64::max);
+        let sum: f64 = values.iter().map(|(value, width)| value * width).sum();
+        let extent = |from: f64, to: f64| -> f64 {
+            values.iter().filter(|(value, _)| (from..=to).contains(&(value / most))).map(|(_, width)| width).sum()
+        };
+        let (near, far) = DECADES.map(|decades| 10.0_f64.powf(-decades)).into();
+        let decades = DECADES[usize::from(extent(far, near) > 0.4 * extent(0.0, 1.0))];
+        Self { most, logarithmic: most * extent(0.0, 1.0) > PEAKED * sum, decades }
     }
 
     /// In 0 … 1.
@@ -47,7 +50,7 @@ impl Scale {
             return 0.0;
         }
         let share = value / self.most;
-        if self.logarithmic { (1.0 + share.log10() / DECADES).clamp(0.0, 1.0) } else { share.min(1.0) }
+        if self.logarithmic { (1.0 + share.log10() / self.decades).clamp(0.0, 1.0) } else { share.min(1.0) }
     }
 
     /// What the outermost ring means; a unit begins with its space.
@@ -56,7 +59,8 @@ impl Scale {
         if self.most <= 0.0 {
             "nothing smooth there to draw".to_owned()
         } else if self.logarithmic {
-            format!("outer ring {most}{unit}, each ring inwards a tenth")
+            let ring = if self.decades > DECADES[0] { "a hundredth" } else { "a tenth" };
+            format!("outer ring {most}{unit}, each ring inwards {ring}")
         } else {
             format!("outer ring {most}{unit}, linear")
         }
@@ -155,8 +159,9 @@ fn head((x, y): (f64, f64), angle: f64, class: &str) -> String {
 fn drawn(arrow: &Arrow) -> String {
     let length = 0.35 + 0.5 * arrow.chance.clamp(0.0, 1.0);
     // Beside the tip, towards the normal but for those along it.
-    let aside = if arrow.angle.abs() > 0.6 { -0.3 * arrow.angle.signum() } else { 0.3 };
-    let ((x, y), (tx, ty)) = (at(arrow.angle, length), at(arrow.angle + aside, length + 0.12));
+    let aside = if arrow.angle.abs() > 0.6 { -16.0 * arrow.angle.signum() } else { 16.0 };
+    let (x, y) = at(arrow.angle, length);
+    let (tx, ty) = (x + aside * arrow.angle.cos(), y + aside * arrow.angle.sin());
     let words = match 100.0 * arrow.chance {
         percent if percent >= 9.95 => format!("{percent:.0} %"),
         percent => format!("{percent:.1} %"),

@@ -25,15 +25,15 @@ chance. The discs are the hemispheres in equal area, above and below the surface
 const ANGLES: [f64; 3] = [0.0, 45.0, 75.0];
 
 /// Samples of a histogram, and those that tell a plot where to look closely.
-const SAMPLES: usize = 1 << 18;
+const SAMPLES: usize = 1 << 17;
 const CLOSELY: usize = 256;
 
 /// Samples that arrows are looked for in.
 const ARROWS: usize = 4096;
 
 /// Of a row's ball, and of the large one: pixels along its side, and samples of each.
-const SMALL: (usize, usize) = (176, 40);
-const LARGE: (usize, usize) = (320, 64);
+const SMALL: (usize, usize) = (168, 32);
+const LARGE: (usize, usize) = (288, 48);
 
 /// A BSDF seen from one direction.
 struct Seen<'a> {
