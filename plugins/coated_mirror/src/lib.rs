@@ -68,6 +68,9 @@ struct Glossy {
     density_rev: Real,
 }
 
+/// The metal is sampled even where a dark tint lets nothing of this direction through: another one's way is shorter.
+const FAINT: Real = 1e-6;
+
 impl CoatedMirror {
     fn microfacet(&self) -> Microfacet {
         Microfacet { distribution: Distribution::Ggx, alpha_u: self.alpha, alpha_v: self.alpha }
@@ -84,7 +87,7 @@ impl CoatedMirror {
         let reflectance = fresnel::dielectric(w.z, RelativeIndex::seen_from(self.int_ior, w.z)).reflectance;
         // As if the metal were smooth.
         let metal = self.fresnel(inside.z) * self.absorption(inside.z, inside.z);
-        let below = (1.0 - reflectance) * metal.mean();
+        let below = (1.0 - reflectance) * metal.mean().max(FAINT);
         let total = (reflectance + below).max(Real::MIN_POSITIVE);
         End { cos: w.z, inside, reflectance, mirror: reflectance / total, metal: below / total }
     }

@@ -58,8 +58,12 @@ impl View<'_> {
         };
         let here = numbers(wo, wi);
         let mut spread: f64 = 0.0;
-        for turn in 0..4 {
-            let there = if turn % 2 == 0 { numbers(dice.nudged(wo), wi) } else { numbers(wo, dice.nudged(wi)) };
+        for turn in 0..9 {
+            let there = match turn % 3 {
+                0 => numbers(dice.nudged(wo), wi),
+                1 => numbers(wo, dice.nudged(wi)),
+                _ => numbers(dice.nudged(wo), dice.nudged(wi)),
+            };
             for (a, b) in here.into_iter().zip(there) {
                 let largest = a.abs().max(b.abs());
                 spread = spread.max(if largest > 0.0 { (a - b).abs() / largest } else { 0.0 });
