@@ -13,7 +13,7 @@ use std::{
 use serde::Serialize;
 
 use crate::{
-    check::{self, Case, Plugin, Report, Settings, builtin},
+    check::{self, Case, Plugin, Report, Settings, Surfaces, builtin},
     cli::{Outcome, arguments::Check},
     error::{Error, Result},
     load::suggest::did_you_mean,
@@ -92,10 +92,14 @@ fn threads(arguments: &Check) -> usize {
 }
 
 fn replay(module: &Arc<Module>, text: &str, arguments: &Check) -> Result<Report> {
-    let case: Case = text.parse().map_err(|why| Error::new(format!("the case {why}"), "copy one from what a check printed"))?;
+    let mut case: Case = text.parse().map_err(|why| Error::new(format!("the case {why}"), "copy one from what a check printed"))?;
     let parts = case.parameters.split('/').filter(|part| !part.is_empty());
     let given: Vec<_> = parts.map(|part| part.split_once('=').unwrap_or((part, ""))).collect();
     let plugin = Plugin::with(module, &check::values(module.manifest(), given)?)?;
+    // A case may have been edited: its one set is meant, however that is called.
+    if let Some(set) = Surfaces::sets(&plugin).first() {
+        case.parameters = set.name.clone();
+    }
     let kind = module.manifest().kind;
     let report = match kind {
         Kind::Bsdf => check::replay_bsdf(&plugin, &case),
