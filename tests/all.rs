@@ -13,6 +13,7 @@ mod house;
 mod instances;
 mod invariance;
 mod pictures;
+#[path = "../host/src/rays/tests/generator.rs"]
 mod random;
 mod references;
 mod sandbox;

@@ -2,6 +2,7 @@
 
 mod distances;
 mod edges;
+mod generator;
 mod instances;
 mod machines;
 mod oracle;
