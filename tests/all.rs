@@ -6,6 +6,7 @@
 
 mod agreement;
 mod check;
+mod corpus;
 mod depth;
 mod furnace;
 mod hostile;

@@ -17,7 +17,23 @@ use crate::error::{Error, Result};
 /// The most pixels that an image may have: 16384 × 8192.
 pub const MAX_PIXELS: u64 = 1 << 27;
 /// The largest image once decoded, all channels and layers together, in bytes; also the largest file.
-const MAX_BYTES: u64 = 4 << 30;
+pub const MAX_BYTES: u64 = 4 << 30;
+
+/// How much an image may take, however small the file is that it is packed into.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Limits {
+    /// Of each layer.
+    pub pixels: u64,
+    /// Once decoded, all channels and layers together.
+    pub bytes: u64,
+}
+
+impl Default for Limits {
+    /// [`MAX_PIXELS`] and [`MAX_BYTES`].
+    fn default() -> Self {
+        Self { pixels: MAX_PIXELS, bytes: MAX_BYTES }
+    }
+}
 
 /// Linear pixels.
 #[derive(Clone, Debug, PartialEq)]
@@ -44,7 +60,7 @@ pub enum Encoding {
 /// # Errors
 /// If the file cannot be read, is no image, or has more than [`MAX_PIXELS`].
 pub fn read(path: &Path, encoding: Encoding) -> Result<Pixels> {
-    let fail = |thing: String| Error::in_file(path, thing, "name an EXR, HDR, PNG, JPEG, BMP or TGA image");
+    let fail = |thing: String| Error::in_file(path, thing, REMEDY);
     let found = std::fs::metadata(path).map_err(|e| fail(format!("cannot be read ({e})")))?;
     if !found.is_file() {
         return Err(fail("is not a file".into()));
@@ -53,34 +69,58 @@ pub fn read(path: &Path, encoding: Encoding) -> Result<Pixels> {
         return Err(fail(format!("is larger than {} GiB", MAX_BYTES >> 30)));
     }
     let bytes = std::fs::read(path).map_err(|e| fail(format!("cannot be read ({e})")))?;
-    let decoded = quietly(|| if bytes.starts_with(&EXR_MAGIC) { exr(&bytes) } else { other(&bytes, path, encoding) });
-    decoded.map_err(|thing| fail(format!("cannot be decoded ({thing})")))
+    decode(&bytes, path, encoding, &Limits::default())
+}
+
+/// Decodes an image that is in memory already; messages call it `name`, whose ending counts where the bytes do not say what they are.
+///
+/// # Errors
+/// If it is no image, or passes the limits.
+pub fn decode(bytes: &[u8], name: &Path, encoding: Encoding, limits: &Limits) -> Result<Pixels> {
+    let decoded = quietly(|| if bytes.starts_with(&EXR_MAGIC) { exr(bytes, limits) } else { other(bytes, name, encoding, limits) });
+    decoded.map_err(|thing| Error::in_file(name, format!("cannot be decoded ({thing})"), REMEDY))
+}
+
+const REMEDY: &str = "name an EXR, HDR, PNG, JPEG, BMP or TGA image";
+
+impl Pixels {
+    /// Takes what no light can be for black (NaN, infinite, negative and huge bands), and says in how many pixels.
+    pub fn clean(&mut self) -> usize {
+        let mut count = 0;
+        for value in &mut self.values {
+            // The bound keeps sums over an image finite.
+            let cleaned = value.map(|v| if (0.0..=1e30).contains(&v) { v } else { 0.0 });
+            count += usize::from(cleaned != *value);
+            *value = cleaned;
+        }
+        count
+    }
 }
 
 const EXR_MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
 
-fn check_size(width: u64, height: u64) -> std::result::Result<(), String> {
+fn check_size(width: u64, height: u64, limits: &Limits) -> std::result::Result<(), String> {
     match width.checked_mul(height) {
         Some(0) => Err("it has no pixels".into()),
-        Some(1..=MAX_PIXELS) => Ok(()),
-        _ => Err(format!("{width}×{height} is more than {MAX_PIXELS} pixels")),
+        Some(pixels) if pixels <= limits.pixels => Ok(()),
+        _ => Err(format!("{width}×{height} is more than {} pixels", limits.pixels)),
     }
 }
 
-fn exr(bytes: &[u8]) -> std::result::Result<Pixels, String> {
+fn exr(bytes: &[u8], limits: &Limits) -> std::result::Result<Pixels, String> {
     let text = |e: exr::error::Error| e.to_string();
     let meta = MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(text)?;
     let mut total = 0_u64;
     for header in &meta.headers {
         let (width, height) = (header.layer_size.x() as u64, header.layer_size.y() as u64);
-        check_size(width, height)?;
+        check_size(width, height, limits)?;
         total = total.saturating_add(width * height * header.channels.bytes_per_pixel as u64);
         if header.deep {
             return Err("deep images are not supported".into());
         }
     }
-    if total > MAX_BYTES {
-        return Err(format!("its layers take more than {} GiB", MAX_BYTES >> 30));
+    if total > limits.bytes {
+        return Err(format!("its layers take more than {} bytes", limits.bytes));
     }
     let image = exr::prelude::read().no_deep_data().largest_resolution_level().all_channels().all_layers().all_attributes();
     let image = image.non_parallel().from_buffered(Cursor::new(bytes)).map_err(text)?;
@@ -117,21 +157,21 @@ fn floats(samples: &FlatSamples) -> Vec<f32> {
     }
 }
 
-fn other(bytes: &[u8], path: &Path, encoding: Encoding) -> std::result::Result<Pixels, String> {
+fn other(bytes: &[u8], path: &Path, encoding: Encoding, limits: &Limits) -> std::result::Result<Pixels, String> {
     let mut reader = image::ImageReader::new(Cursor::new(bytes));
     // TGA has no signature, so there the name decides.
     if let Ok(format) = image::ImageFormat::from_path(path) {
         reader.set_format(format);
     }
     let mut reader = reader.with_guessed_format().map_err(|e| e.to_string())?;
-    let mut limits = image::Limits::default();
-    limits.max_image_width = Some(1 << 20);
-    limits.max_image_height = Some(1 << 20);
-    limits.max_alloc = Some(MAX_PIXELS * 16);
-    reader.limits(limits);
+    let mut theirs = image::Limits::default();
+    theirs.max_image_width = Some(1 << 20);
+    theirs.max_image_height = Some(1 << 20);
+    theirs.max_alloc = Some(limits.pixels * 16);
+    reader.limits(theirs);
     let decoded = reader.decode().map_err(|e| e.to_string())?;
     let (width, height) = (decoded.width(), decoded.height());
-    check_size(width.into(), height.into())?;
+    check_size(width.into(), height.into(), limits)?;
     let values = match decoded {
         DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_) => decoded.to_rgb32f().pixels().map(|p| Spectrum(p.0)).collect(),
         DynamicImage::ImageLuma16(_) | DynamicImage::ImageLumaA16(_) | DynamicImage::ImageRgb16(_) | DynamicImage::ImageRgba16(_) => {
@@ -213,6 +253,14 @@ mod tests {
         let value = |x: usize, _: usize| (x as f32, -1.0_f32, f32::INFINITY);
         exr::prelude::write_rgb_file(&path, 2, 1, value).unwrap();
         assert_eq!(read(&path, Encoding::Srgb).unwrap().values[1], Spectrum([1.0, -1.0, f32::INFINITY]));
+    }
+
+    #[test]
+    fn what_no_light_can_be_becomes_black_and_is_counted() {
+        let values = vec![Spectrum([1.0, f32::NAN, -1.0]), Spectrum([f32::INFINITY, 2.0, 0.0]), Spectrum::ONE];
+        let mut pixels = Pixels { width: 3, height: 1, values };
+        assert_eq!(pixels.clean(), 2);
+        assert_eq!(pixels.values, [Spectrum([1.0, 0.0, 0.0]), Spectrum([0.0, 2.0, 0.0]), Spectrum::ONE]);
     }
 
     #[test]

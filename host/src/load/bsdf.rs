@@ -40,10 +40,11 @@ pub(super) fn material(context: &mut Context, element: &Element) -> Result<Mater
         }
         None => {}
     }
-    if context.material_ids.values().filter(|id| id.is_none()).count() >= MAX_DEPTH {
+    if context.materials_open >= MAX_DEPTH {
         return Err(Error::at(&element.place, format!("materials nest more than {MAX_DEPTH} deep"), "flatten them"));
     }
     context.material_ids.insert(element.serial, None);
+    context.materials_open += 1;
     let properties = Properties::read(element, &context.ids)?;
     let material = match plugin::find(context, "bsdf", properties.kind(), &element.place)? {
         Some(module) => Material::Plugin(plugin::shader(context, &properties, module)?),
@@ -54,6 +55,7 @@ pub(super) fn material(context: &mut Context, element: &Element) -> Result<Mater
     };
     properties.finish()?;
     let id = add(context, material);
+    context.materials_open -= 1;
     context.material_ids.insert(element.serial, Some(id));
     Ok(id)
 }

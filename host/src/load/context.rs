@@ -21,6 +21,8 @@ pub(super) struct Context<'s> {
     pub(super) materials: Vec<Material>,
     /// By the serial of the element; `None` while the material is being read.
     pub(super) material_ids: HashMap<u32, Option<MaterialId>>,
+    /// How many materials are being read, each inside the one before.
+    pub(super) materials_open: usize,
     pub(super) groups: Vec<Arc<Group>>,
     /// By the serial of the element; `None` while the group is being read.
     pub(super) groups_read: HashMap<u32, Option<Known>>,
@@ -45,6 +47,7 @@ impl<'s> Context<'s> {
             warnings: Vec::new(),
             materials: Vec::new(),
             material_ids: HashMap::new(),
+            materials_open: 0,
             groups: Vec::new(),
             groups_read: HashMap::new(),
             groups_open: 0,

@@ -1,21 +1,27 @@
 //! `$name` in attribute values: what `--define` and `<default>` say.
 
-use std::collections::BTreeMap;
+use std::{collections::BTreeMap, ops::Bound};
 
 use super::suggest::{did_you_mean, list};
 use crate::error::{Error, Place, Result};
+
+/// How much all the values that are filled in may come to, in bytes: each may hold the one before it twice.
+const MAX_FILLED: usize = 64 << 20;
 
 /// Values by name. What was given from outside wins over what the scene says, and the scene's first word over its later ones.
 pub(super) struct Defines {
     values: BTreeMap<String, String>,
     /// Given from outside, and whether the scene ever asked.
     given: BTreeMap<String, bool>,
+    /// How much was filled in so far, in bytes.
+    filled: usize,
 }
 
 impl Defines {
     /// From `--define NAME=VALUE`; the last of two equal names wins.
     pub(super) fn new(given: &[(String, String)]) -> Self {
-        Self { values: given.iter().cloned().collect(), given: given.iter().map(|(name, _)| (name.clone(), false)).collect() }
+        let values = given.iter().cloned().collect();
+        Self { values, given: given.iter().map(|(name, _)| (name.clone(), false)).collect(), filled: 0 }
     }
 
     /// What `<default>` says.
@@ -31,14 +37,34 @@ impl Defines {
         while let Some(dollar) = rest.find('$') {
             out.push_str(&rest[..dollar]);
             rest = &rest[dollar + 1..];
-            let name = self.values.keys().filter(|name| !name.is_empty() && rest.starts_with(name.as_str())).max_by_key(|name| name.len());
-            let Some(name) = name.cloned() else { return Err(self.undefined(rest, place)) };
-            out.push_str(&self.values[&name]);
+            let Some((name, value)) = self.longest(rest) else { return Err(self.undefined(rest, place)) };
+            let (name, value) = (name.clone(), value.clone());
+            self.filled += value.len();
+            if self.filled > MAX_FILLED {
+                let thing = format!("the values filled in for $names come to more than {} MiB", MAX_FILLED >> 20);
+                return Err(Error::at(place, thing, "write shorter values"));
+            }
+            out.push_str(&value);
             self.mark(&name);
             rest = &rest[name.len()..];
         }
         out.push_str(rest);
         Ok(out)
+    }
+
+    /// The longest name that `text` begins with, and its value.
+    fn longest(&self, text: &str) -> Option<(&String, &String)> {
+        let mut shared = text;
+        loop {
+            // Names sort as their beginnings do: none that sorts after this one fits, nor any longer than what it shares with the text.
+            let before = (Bound::Excluded(""), Bound::Included(shared));
+            let (name, value) = self.values.range::<str, _>(before).next_back()?;
+            let length = name.chars().zip(shared.chars()).take_while(|(a, b)| a == b).map(|(a, _)| a.len_utf8()).sum();
+            if length == name.len() {
+                return Some((name, value));
+            }
+            shared = &shared[..length];
+        }
     }
 
     /// An error if something was given that the scene never asked for.
@@ -87,6 +113,22 @@ mod tests {
     fn the_longest_name_is_meant() {
         let mut defines = Defines::new(&[("a".into(), "1".into()), ("ab".into(), "2".into())]);
         assert_eq!(defines.apply("$a $ab $a.5", &place()), Ok("1 2 1.5".into()));
+        let mut defines = Defines::new(&["", "a", "abc", "abd", "b", "ä"].map(|name| (name.into(), format!("<{name}>"))));
+        assert_eq!(defines.apply("$abb$abda$abcc$ba$ää", &place()), Ok("<a>bb<abd>a<abc>c<b>a<ä>ä".into()));
+        assert!(defines.apply("$c", &place()).is_err() && defines.apply("$", &place()).is_err());
+    }
+
+    #[test]
+    fn values_that_double_and_double_are_refused() {
+        let mut defines = Defines::new(&[("a0".into(), "0123456789".into())]);
+        let error = (0..100).find_map(|i| match defines.apply(&format!("$a{i}$a{i}"), &place()) {
+            Ok(value) => {
+                defines.set_default(&format!("a{}", i + 1), value);
+                None
+            }
+            Err(error) => Some(error.to_string()),
+        });
+        assert!(error.unwrap().contains("more than 64 MiB"));
     }
 
     #[test]

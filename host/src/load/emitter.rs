@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use bidir_kernel::Spectrum;
 use glam::{DAffine3, DVec3};
 
 use super::{
@@ -191,41 +190,16 @@ fn envmap(context: &mut Context, of: &Properties) -> Result<EmitterKind> {
     let image = match context.environments.get(&path) {
         Some(known) => known.clone(),
         None => {
-            let pixels = read(&path, Encoding::Srgb).map_err(|e| named_here(&e, place))?;
-            let mut image = EnvironmentImage { width: pixels.width, height: pixels.height, texels: pixels.values };
-            let cleaned = clean(&mut image.texels);
+            let mut pixels = read(&path, Encoding::Srgb).map_err(|e| named_here(&e, place))?;
+            let cleaned = pixels.clean();
             if cleaned > 0 {
                 let file = path.file_name().unwrap_or_default().to_string_lossy();
                 context.warn(place, format_args!("{cleaned} pixels of {file} are NaN, infinite or negative, and taken as black there"));
             }
-            let image = Arc::new(image);
+            let image = Arc::new(EnvironmentImage { width: pixels.width, height: pixels.height, texels: pixels.values });
             context.environments.insert(path, image.clone());
             image
         }
     };
     Ok(EmitterKind::Envmap { image, scale, to_world })
-}
-
-/// Sets what no light can be to 0, and says in how many texels.
-fn clean(texels: &mut [Spectrum]) -> usize {
-    let mut count = 0;
-    for texel in texels {
-        // The bound keeps sums over an image finite.
-        let cleaned = texel.map(|v| if (0.0..=1e30).contains(&v) { v } else { 0.0 });
-        count += usize::from(cleaned != *texel);
-        *texel = cleaned;
-    }
-    count
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn what_no_light_can_be_becomes_black_and_is_counted() {
-        let mut texels = [Spectrum([1.0, f32::NAN, -1.0]), Spectrum([f32::INFINITY, 2.0, 0.0]), Spectrum::ONE];
-        assert_eq!(clean(&mut texels), 2);
-        assert_eq!(texels, [Spectrum([1.0, 0.0, 0.0]), Spectrum([0.0, 2.0, 0.0]), Spectrum::ONE]);
-    }
 }

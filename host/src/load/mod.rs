@@ -12,7 +12,7 @@ mod group;
 mod ids;
 mod integrator;
 mod ior;
-mod mesh;
+pub mod mesh;
 mod plugin;
 mod properties;
 mod sensor;

@@ -1,6 +1,9 @@
 //! What stands inside an element, typed, each entry remembering whether anybody asked for it.
 
-use std::cell::{Cell, RefCell};
+use std::{
+    cell::{Cell, RefCell},
+    collections::HashMap,
+};
 
 use bidir_kernel::{BANDS, Spectrum};
 use glam::{DAffine3, DVec3};
@@ -70,13 +73,16 @@ impl<'s> Properties<'s> {
             element.required("type")?;
         }
         let mut entries: Vec<Property> = Vec::with_capacity(element.children.len());
-        for child in &element.children {
+        let mut named = HashMap::new();
+        for child in element.children.iter().filter(|child| child.tag != "alias") {
             let name = child.attribute("name");
-            if let Some(twin) = name.and_then(|name| entries.iter().find(|e| e.name == Some(name))) {
-                let thing = format!("\"{}\" is given twice, first on line {}", name.unwrap_or(""), line(&twin.element.place));
+            if let Some(name) = name
+                && let Some(first) = named.insert(name, &child.place)
+            {
+                let thing = format!("\"{name}\" is given twice, first on line {}", line(first));
                 return Err(Error::at(&child.place, thing, "keep one of them"));
             }
-            let value = if child.tag == "alias" { continue } else { read_value(child, ids)? };
+            let value = read_value(child, ids)?;
             entries.push(Property { name, value, element: child, used: Cell::new(false) });
         }
         Ok(Self { element, entries, known: RefCell::new(Vec::new()) })

@@ -89,7 +89,7 @@ fn fov_x(of: &Properties, aspect: f64) -> Result<f64> {
         if of.has("fov_axis") {
             return Err(of.error("fov_axis", "is given without fov", "write fov, or leave fov_axis out: focal_length is the diagonal's"));
         }
-        return Ok(degrees(FILM_DIAGONAL / 2.0 / millimetres * diagonal));
+        return checked(of, "focal_length", degrees(FILM_DIAGONAL / 2.0 / millimetres * diagonal));
     };
     if of.has("focal_length") {
         return Err(of.error("focal_length", "is given together with fov", "keep one of them"));
@@ -103,8 +103,12 @@ fn fov_x(of: &Properties, aspect: f64) -> Result<f64> {
     let axes = [("x", 1.0), ("y", aspect), ("diagonal", diagonal), ("smaller", smaller), ("larger", larger)];
     let factor = of.choice("fov_axis", &axes)?;
     let fov_x = if factor == 1.0 { fov } else { degrees(tan(fov) * factor) };
+    checked(of, "fov", fov_x)
+}
+
+fn checked(of: &Properties, name: &str, fov_x: f64) -> Result<f64> {
     if !(1e-6..=179.99999).contains(&fov_x) {
-        return Err(of.error("fov", format!("is {fov_x} degrees along x"), "choose one further from 0 and 180"));
+        return Err(of.error(name, format!("is {fov_x} degrees along x"), "choose one further from 0 and 180"));
     }
     Ok(fov_x)
 }

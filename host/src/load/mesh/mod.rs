@@ -16,6 +16,37 @@ use crate::{
 /// The largest mesh file, in bytes.
 const MAX_BYTES: u64 = 4 << 30;
 
+/// How a mesh is written.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Format {
+    /// Wavefront OBJ.
+    Obj,
+    /// Stanford PLY, ascii or binary.
+    Ply,
+}
+
+/// A mesh out of a file.
+#[derive(Clone, Debug)]
+pub struct Parsed {
+    /// As the file has it: finite, every index in range, every triangle with an area.
+    pub mesh: Mesh,
+    /// How many triangles without area were left out.
+    pub dropped: usize,
+}
+
+/// Reads a mesh that is in memory already; messages call it `name`.
+///
+/// # Errors
+/// If it is not in that format, or is no mesh of finite numbers with an area.
+pub fn parse(bytes: &[u8], format: Format, name: &Path) -> Result<Parsed> {
+    let mut mesh = match format {
+        Format::Obj => obj::read(bytes, name)?,
+        Format::Ply => ply::read(bytes, name)?,
+    };
+    let dropped = check(&mut mesh, name)?;
+    Ok(Parsed { mesh, dropped })
+}
+
 /// Whether a mesh's v runs the other way than its file says.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 enum FlipV {
@@ -36,21 +67,21 @@ pub(super) fn mesh(context: &mut Context, of: &Properties) -> Result<Arc<Mesh>> 
     if of.kind() == "cube" {
         return Ok(Arc::new(finish(cube::mesh(), facets)));
     }
+    let format = if of.kind() == "obj" { Format::Obj } else { Format::Ply };
     // Mitsuba's defaults: an OBJ's v points up and its images' v points down, so one is turned.
-    let flip = of.boolean("flip_tex_coords")?.unwrap_or(of.kind() == "obj");
+    let flip = of.boolean("flip_tex_coords")?.unwrap_or(format == Format::Obj);
     let flip = if flip { FlipV::Yes } else { FlipV::No };
     let path = context.file(of.required_text("filename")?, of.place_of("filename"))?;
-    let key = format!("{} {} {facets:?} {flip:?}", of.kind(), path.display());
+    let key = format!("{format:?} {} {facets:?} {flip:?}", path.display());
     if let Some(known) = context.meshes.get(&key) {
         return Ok(known.clone());
     }
     let here = |error: Error| named_here(&error, of.place_of("filename"));
     let bytes = bytes(&path).map_err(here)?;
-    let mut mesh = if of.kind() == "obj" { obj::read(&bytes, &path) } else { ply::read(&bytes, &path) }.map_err(here)?;
+    let Parsed { mut mesh, dropped } = parse(&bytes, format, &path).map_err(here)?;
     if flip == FlipV::Yes {
         mesh.uvs.iter_mut().for_each(|uv| uv[1] = 1.0 - uv[1]);
     }
-    let dropped = check(&mut mesh, &path).map_err(here)?;
     if dropped > 0 {
         let file = path.file_name().unwrap_or_default().to_string_lossy();
         context.warn(of.place(), format_args!("dropped {dropped} triangles without area from {file}"));

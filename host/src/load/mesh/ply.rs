@@ -17,6 +17,9 @@ pub(super) fn read(bytes: &[u8], path: &Path) -> Result<Mesh> {
     let (header, body) = header(bytes).map_err(fail)?;
     let mut source = Source { rest: body, format: header.format };
     let mut mesh = Mesh::default();
+    if header.elements.iter().filter(|element| element.name == "vertex").count() > 1 {
+        return Err(fail("there are two elements \"vertex\"".into()));
+    }
     for element in &header.elements {
         match element.name.as_str() {
             "vertex" => vertices(&mut source, element, &mut mesh),
@@ -312,6 +315,13 @@ mod tests {
         let header = "ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\nproperty float x\nend_header\n";
         assert!(mesh(header.as_bytes()).unwrap_err().to_string().contains("announces"));
         assert!(mesh(&ascii(SQUARE, "7 4000000000 0 1 2")).is_err());
+    }
+
+    #[test]
+    fn a_second_list_of_vertices_is_refused() {
+        let vertices = "element vertex 1\nproperty float x\nproperty float y\nproperty float z\n";
+        let text = format!("ply\nformat ascii 1.0\n{vertices}{vertices}end_header\n0 0 0\n0 0 0\n");
+        assert!(mesh(text.as_bytes()).unwrap_err().to_string().contains("two elements \"vertex\""));
     }
 
     #[test]
