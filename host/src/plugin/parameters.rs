@@ -139,9 +139,10 @@ impl Parameter {
         Ok(())
     }
 
-    /// The least and the most a channel may be.
+    /// The least and the most a channel may be; finite, whatever the manifest says.
     pub fn range(&self) -> (f32, f32) {
-        (self.min.map_or(f32::MIN, |v| v as f32), self.max.map_or(f32::MAX, |v| v as f32))
+        let within = |v: f64| (v as f32).clamp(f32::MIN, f32::MAX);
+        (self.min.map_or(f32::MIN, within), self.max.map_or(f32::MAX, within))
     }
 
     fn check_range(&self, value: f32) -> Result<(), String> {

@@ -95,6 +95,10 @@ impl Packet {
         while candidates != 0 {
             let lane = candidates.trailing_zeros() as usize & 3;
             candidates &= candidates - 1;
+            // An area that is too small for f32 to divide by has no coordinates: the ray passes.
+            if !(v[lane] + w[lane]).is_finite() {
+                continue;
+            }
             let key = self.keys[lane];
             let t = if unsure >> lane & 1 != 0 { self.unsure_distance(probe, lane) } else { t[lane] };
             if nearest.loses_to(t, key) && !(probe.hide && key.hidden_from_lens()) {

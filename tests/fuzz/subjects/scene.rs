@@ -16,7 +16,7 @@ fn folder() -> PathBuf {
 
 thread_local! {
     /// Kept, so that a module is compiled once.
-    static LIBRARY: Library = Library::new(vec![Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../plugins/prebuilt")]);
+    static LIBRARY: Library = Library::new(vec![Path::new(env!("CARGO_MANIFEST_DIR")).join("../corpus/module")]);
 }
 
 /// A scene is refused with a remedy, or is built and traced.

@@ -37,6 +37,19 @@ fn an_empty_scene_answers_nothing() {
 }
 
 #[test]
+fn a_triangle_thinner_than_f32_divides_by_gives_no_point_that_is_no_number() {
+    for height in [1e-37, 1e-38, 4e-39, 1e-40, 1e-44] {
+        let corners = [Vec3::ZERO, Vec3::X, Vec3::new(0.0, height, 0.0)];
+        let bvh = build(|all| _ = all.triangle(corners, Visibility::Everywhere));
+        let from_above = ray(Vec3::new(0.25, height * 0.25, 1.0), Vec3::NEG_Z);
+        if let Some(hit) = bvh.closest(&from_above) {
+            let point = bvh.surface(&from_above, &hit);
+            assert!(point.position.is_finite() && point.offset.is_finite(), "{height}: {point:?}");
+        }
+    }
+}
+
+#[test]
 fn rays_that_are_not_rays_hit_nothing() {
     let bvh = room();
     let bad = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY];
