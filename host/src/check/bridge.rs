@@ -100,6 +100,10 @@ const MANY_TIMES: f64 = 1e6;
 /// What rounding may do to a mass or a mean, relative to it.
 const ROUNDING: f64 = 1e-3;
 
+/// A weight that samples may bring at most, so that those seldom drawn are not missed by chance: where values are more than this many
+/// times the density, samples as good as never go.
+const SELDOM: f64 = 100.0;
+
 /// What tables and fits inside a shader may add to its energy.
 const ENERGY_SLACK: f64 = 2e-3;
 
@@ -131,6 +135,10 @@ pub(super) fn compare(subject: &impl Scatterer, samples: usize, dice: &mut Dice)
         cells[cell].1 += bridged;
         sums.known.add(bridged);
         sums.direct.add(claim.pdf / q);
+        for (heaviest, value) in sums.heaviest.iter_mut().zip(claim.value) {
+            let weight = value / claim.pdf;
+            *heaviest = if weight <= SELDOM { heaviest.max(weight) } else { *heaviest };
+        }
         add(&mut sums.claimed, claim.value.map(|value| value / (claim.pdf + q)));
     }
     sums.found(samples, shape(&partition, &cells, &sums), nothing(subject))
@@ -165,6 +173,8 @@ struct Sums {
     left: [Moments; 3],
     claimed: [Moments; 3],
     energy: [Moments; 3],
+    /// What a sample can bring, as far as claims tell, whether one did or not.
+    heaviest: [f64; 3],
 }
 
 /// A deviation of two means of independent values.
@@ -208,7 +218,11 @@ impl Sums {
         let (brought, left, known) = (&self.brought[band], &self.left[band], &self.claimed[band]);
         let off = left.mean() - known.mean();
         let slack = 2.0 * ROUNDING * brought.mean() + nothing;
-        (brought.mean(), brought.mean() - off, deviation(off, &[(left, 2.0 * left.largest), (known, known.largest)], slack))
+        (
+            brought.mean(),
+            brought.mean() - off,
+            deviation(off, &[(left, 2.0 * left.largest.max(self.heaviest[band])), (known, known.largest)], slack),
+        )
     }
 }
 
