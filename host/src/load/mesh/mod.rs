@@ -53,7 +53,7 @@ pub(super) fn mesh(context: &mut Context, of: &Properties) -> Result<Arc<Mesh>> 
     let dropped = check(&mut mesh, &path).map_err(here)?;
     if dropped > 0 {
         let file = path.file_name().unwrap_or_default().to_string_lossy();
-        context.warn(of.place(), format_args!("dropped {dropped} triangles without area from {file}"));
+        context.warn(of.place(), format_args!("dropped {dropped} triangles from {file}: without area, or with a corner that is no point"));
     }
     let mesh = Arc::new(finish(mesh, facets));
     context.meshes.insert(key, mesh.clone());
@@ -72,14 +72,11 @@ fn bytes(path: &Path) -> Result<Vec<u8>> {
     std::fs::read(path).map_err(|e| fail(format!("cannot be read ({e})")))
 }
 
-/// Refuses what is not finite or names vertices that are not there; drops triangles without area and says how many.
+/// Refuses normals and coordinates that are not finite and vertices that are not there; drops triangles without area, and those with a
+/// corner that is no point, and says how many.
 fn check(mesh: &mut Mesh, path: &Path) -> Result<usize> {
     let remedy = "mend the mesh, or export it again";
     let not_finite = |what: &str, at: usize| Error::in_file(path, format!("{what} of vertex {at} (counted from 0) is not finite"), remedy);
-    // The bound keeps squares of differences within f64 and differences within f32.
-    if let Some(at) = mesh.positions.iter().position(|p| p.iter().any(|v| v.is_nan() || v.abs() > 1e30)) {
-        return Err(not_finite("the position", at));
-    }
     if let Some(at) = mesh.normals.iter().position(|n| n.iter().any(|v| !v.is_finite())) {
         return Err(not_finite("the normal", at));
     }
@@ -93,9 +90,15 @@ fn check(mesh: &mut Mesh, path: &Path) -> Result<usize> {
     }
     let before = mesh.triangles.len();
     let positions = &mesh.positions;
-    mesh.triangles.retain(|&corners| normals::doubled_area(positions, corners) > 0.0);
+    // The bound keeps squares of differences within f64 and differences within f32.
+    let is_point = |v: u32| positions[v as usize].iter().all(|x| x.abs() <= 1e30);
+    mesh.triangles.retain(|&corners| corners.into_iter().all(is_point) && normals::doubled_area(positions, corners) > 0.0);
+    // Those that nothing names any longer.
+    for position in mesh.positions.iter_mut().filter(|position| !position.iter().all(|x| x.abs() <= 1e30)) {
+        *position = [0.0; 3];
+    }
     if mesh.triangles.is_empty() {
-        let thing = if before == 0 { "has no triangles".into() } else { format!("has {before} triangles, none with an area") };
+        let thing = if before == 0 { "has no triangles".into() } else { format!("has {before} triangles, and none with an area") };
         return Err(Error::in_file(path, thing, "leave the shape out, or export it again"));
     }
     Ok(before - mesh.triangles.len())
@@ -128,11 +131,23 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_finite_is_one_error_that_names_the_vertex() {
+    fn triangles_with_a_corner_that_is_no_point_are_dropped_and_counted() {
         for z in [f32::NAN, f32::INFINITY, 1e31] {
-            let error = check(&mut triangle(z), Path::new("m.ply")).unwrap_err().to_string();
-            assert!(error.starts_with("m.ply: the position of vertex 2"), "{error}");
+            let mut mesh = triangle(z);
+            mesh.positions.push([0.0, 1.0, 0.0]);
+            mesh.triangles.push([0, 1, 4]);
+            assert_eq!(check(&mut mesh, Path::new("m.ply")), Ok(3));
+            assert_eq!(mesh.triangles, [[0, 1, 4]]);
+            assert!(mesh.positions.iter().flatten().all(|x| x.is_finite()));
         }
+    }
+
+    #[test]
+    fn a_normal_that_is_not_finite_is_one_error_that_names_the_vertex() {
+        let mut mesh = triangle(0.0);
+        mesh.normals = vec![[0.0, 0.0, 1.0], [0.0, f32::NAN, 1.0], [0.0, 0.0, 1.0], [0.0, 0.0, 1.0]];
+        let error = check(&mut mesh, Path::new("m.ply")).unwrap_err().to_string();
+        assert!(error.starts_with("m.ply: the normal of vertex 1"), "{error}");
     }
 
     #[test]
