@@ -291,7 +291,9 @@ impl Bvh {
     }
 
     fn found(&self, at: OnRay, leaf: Child, (one, two): (f64, f64), trail: &[u32]) -> Found {
-        let on_ray = || at.origin + at.direction * at.t;
+        // From a sphere's radius away a rounded distance is as good as exact; from 10⁷ radii it tells no side of the sphere from the other.
+        let exact = |t: f64| if (t - at.t).abs() <= 1e-6 * at.t.abs() { t } else { at.t };
+        let on_ray = |t: f64| at.origin + at.direction * t;
         let here = |position: DVec3, normal, local| Found { position, normal, local, error: rounding(position, &self.bounds) };
         match leaf.kind() {
             Leaf::Packet => {
@@ -303,17 +305,17 @@ impl Bvh {
             }
             Leaf::Sphere => {
                 let sphere = &self.spheres[leaf.index()].shape;
-                let normal = sphere.normal(on_ray());
+                let normal = sphere.normal(on_ray(exact(sphere.distance(at.origin, at.direction))));
                 here(sphere.point(normal), normal, normal)
             }
             Leaf::Disk => {
                 let disk = &self.disks[leaf.index()].shape;
-                let (a, b) = disk.coordinates(on_ray());
+                let (a, b) = disk.coordinates(on_ray(exact(disk.distance(at.origin, at.direction))));
                 here(disk.centre + disk.x * a + disk.y * b, disk.normal, DVec3::new(a, b, 0.0))
             }
             Leaf::Cylinder => {
                 let cylinder = &self.cylinders[leaf.index()].shape;
-                let (normal, local) = cylinder.normal(on_ray());
+                let (normal, local) = cylinder.normal(on_ray(exact(cylinder.distance(at.origin, at.direction))));
                 here(cylinder.point(normal, local.z), normal, local)
             }
             Leaf::Instance => {
@@ -321,7 +323,7 @@ impl Bvh {
                 let (origin, direction) = instance.to_local(at.origin, at.direction);
                 let (slot, trail) = trail.split_first().unwrap_or((&0, &[]));
                 let inner = instance.geometry().found(OnRay { origin, direction, t: at.t }, Child(*slot), (one, two), trail);
-                let reach = self.bounds.reach(on_ray().as_vec3()).as_dvec3();
+                let reach = self.bounds.reach(on_ray(at.t).as_vec3()).as_dvec3();
                 let (position, normal, error) = instance.to_world(inner.position, inner.normal, inner.error, reach);
                 Found { position, normal, local: inner.local, error: error + rounding(position, &self.bounds) }
             }
