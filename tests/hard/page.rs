@@ -2,7 +2,7 @@
 
 use std::{fmt::Write, panic::catch_unwind, time::Instant};
 
-use super::{Case, Form, Held, cases, guards::Price};
+use super::{Case, Form, Held, guards::Price};
 
 /// A case as it was found.
 #[derive(Debug)]
@@ -45,6 +45,9 @@ impl std::fmt::Display for Row {
     }
 }
 
+/// As columns are called.
+const FORMS: [&str; 3] = ["native, f32", "f64 twin", "sandbox"];
+
 /// How many rows the table of hard cases has, with those that wait for media and merging.
 const TABLE: usize = 68;
 
@@ -64,7 +67,7 @@ fn short(x: f64) -> String {
 }
 
 /// The one that is nearest to its bound, or beyond it most; the others within reach.
-fn cell(held: &[Held]) -> String {
+fn cell(form: &str, held: &[Held]) -> String {
     let severity = |held: &Held| if held.bound > 0.0 { held.worst / held.bound } else { held.worst * f64::INFINITY };
     let severity = |held: &Held| if held.worst == 0.0 { 0.0 } else { severity(held) };
     let Some(worst) = held.iter().max_by(|a, b| severity(a).total_cmp(&severity(b))) else {
@@ -78,7 +81,7 @@ fn cell(held: &[Held]) -> String {
     let mark = if class == "good" { "✓" } else { "✗" };
     let summary =
         format!("<span class=\"mark\">{mark}</span> {} <span class=\"bound\">≤ {}</span>", short(worst.worst), short(worst.bound));
-    format!("<td class=\"{class}\"><details><summary>{summary}</summary><ul>{lines}</ul></details></td>")
+    format!("<td class=\"{class}\" data-form=\"{form}\"><details><summary>{summary}</summary><ul>{lines}</ul></details></td>")
 }
 
 /// The page as it stands in a file: no script, no network.
@@ -94,7 +97,7 @@ pub fn page(rows: &[Row], prices: &[Price]) -> String {
     let mut table = String::new();
     for row in rows {
         let Row { number, what, seen, must, cells, seconds } = row;
-        let cells = cells.iter().map(|held| cell(held)).collect::<String>();
+        let cells = FORMS.iter().zip(cells).map(|(form, held)| cell(form, held)).collect::<String>();
         let (what, seen, must) = (escaped(what), escaped(seen), escaped(must));
         let _written = writeln!(
             table,
@@ -113,15 +116,15 @@ pub fn page(rows: &[Row], prices: &[Price]) -> String {
         );
     }
     let style = include_str!("page.css");
-    let count = cases().len();
+    let forms = FORMS.map(|form| format!("<th>{form}</th>")).concat();
     format!(
         r#"<!DOCTYPE html>
 <html lang="en"><head><meta charset="utf-8"/><meta name="viewport" content="width=device-width, initial-scale=1"/><title>Hard cases</title><style>
 {style}</style></head><body>
 <h1>Hard cases</h1>
 <p class="headline {class}">{headline}</p>
-<p>Each of these broke some renderer; the number in small print is that project's issue. A cell shows what comes nearest to its bound; open it for the rest. The f64 twin is the kernel and the standard shaders compiled a second time in f64. In the sandbox the shaders are WebAssembly modules. {waiting} of the table's {TABLE} rows wait for media and merging, and {count} are here.</p>
-<div class="scroll"><table><thead><tr><th>#</th><th>case, and what it broke</th><th>must hold</th><th>native, f32</th><th>f64 twin</th><th>sandbox</th><th>took</th></tr></thead><tbody>
+<p>Each of these broke some renderer; the number in small print is that project's issue. A cell shows what comes nearest to its bound; open it for the rest. The f64 twin is the kernel and the standard shaders compiled a second time in f64. In the sandbox the shaders are WebAssembly modules. {waiting} of the table's {TABLE} rows wait for media and merging.</p>
+<div class="scroll"><table><thead><tr><th>#</th><th>case, and what it broke</th><th>must hold</th>{forms}<th>took</th></tr></thead><tbody>
 {table}</tbody></table></div>
 <h2>What the guards cost</h2>
 <p>Both forms timed in turn, CPU time, medians. No flag of a render and no Cargo feature turns a guard off.</p>

@@ -114,8 +114,8 @@ impl Vertex {
         let sample = bsdf.sample(wo, u, carried)?;
         let wi = sample.wi;
         let there = told(wo, &sample);
-        // In a right BSDF this direction brings nothing.
-        if !(there.pdf > 0.0 && wi.z != 0.0 && wo.z != 0.0) {
+        // No path goes where nothing is carried on.
+        if sample.weight.is_black() || !(there.pdf > 0.0 && wi.z != 0.0 && wo.z != 0.0) {
             return None;
         }
         let (near, far) = (evaluated(bsdf, wo, wi, carried), evaluated(bsdf, wi, wo, other));
