@@ -12,6 +12,48 @@ use crate::{
     single::world as single,
 };
 
+/// A function of the kernel that directions, points and frames come from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Function {
+    /// Square → disk.
+    Disk,
+    /// Square → hemisphere.
+    CosineHemisphere,
+    /// Square → sphere.
+    Sphere,
+    /// Square → cone; how open it is from 1 down to 1e-12.
+    Cone,
+    /// sin² → 1 − cos, down to 1e-12.
+    OneMinusCos,
+    /// Square → triangle.
+    Triangle,
+    /// A frame about a direction.
+    Frame,
+    /// A frame about a direction, along another one.
+    TangentFrame,
+    /// From a point to another one 1e-3 … 1e3 away, and the square of its distance.
+    DirectionTo,
+    /// Raster → a pinhole's direction and its density.
+    Look,
+    /// A direction → a pinhole's raster and its density.
+    See,
+}
+
+/// All of them.
+pub const FUNCTIONS: [Function; 11] = [
+    Function::Disk,
+    Function::CosineHemisphere,
+    Function::Sphere,
+    Function::Cone,
+    Function::OneMinusCos,
+    Function::Triangle,
+    Function::Frame,
+    Function::TangentFrame,
+    Function::DirectionTo,
+    Function::Look,
+    Function::See,
+];
+
 /// What a walk that asks a surface carries.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Heading {
@@ -125,10 +167,11 @@ pub fn sampled(name: &str, material: &Material) -> Held {
                 let values = [3, 4, 5].map(|band| found.numbers[band] * pdf);
                 worst.see(Some(&[&values[..], &[pdf, pdf_rev]].concat()), Some(&exact), &moved, &[0..3, 3..4, 4..5], asked);
             }
-            if end {
+            let exact = double::sampled(material, wo, u, heading, &still());
+            let smooth = |lobe: Option<u32>| lobe.is_some_and(|lobe| lobe & SMOOTH != 0);
+            if end && (smooth(found.as_ref().map(|found| found.lobe)) || smooth(exact.as_ref().map(|exact| exact.lobe))) {
                 continue;
             }
-            let exact = double::sampled(material, wo, u, heading, &still());
             let moved = |nudge: &Nudge| double::sampled(material, wo, u, heading, nudge);
             // Whichever lobe: another one is another answer.
             let same = found.as_ref().zip(exact.as_ref()).is_none_or(|(a, b)| a.lobe == b.lobe);
@@ -160,6 +203,21 @@ pub fn profile_sampled(name: &str, gleam: &Gleam) -> Held {
         let found = single::profile_sampled(gleam, [x, y], &still());
         let numbers = found.as_ref().map(|found| &found.numbers[..]);
         worst.see(numbers, exact.as_ref(), &moved, &[0..3, 3..6, 6..7], || format!("u {:?}", [x, y]));
+    }
+    worst.held()
+}
+
+/// A function of the kernel, over random numbers in [0, 1) that it makes its inputs of.
+pub fn computed(function: Function) -> Held {
+    let mut worst = Worst::new("kernel", &format!("{function:?}"));
+    for i in 0..SAMPLES {
+        let u = [0, 1, 2, 3, 4].map(|place| Numbers(i).at(place));
+        let exact = double::computed(function, u, &still());
+        let moved = |nudge: &Nudge| double::computed(function, u, nudge);
+        let found = single::computed(function, u, &still());
+        let numbers = found.as_ref().map(|found| &found.numbers[..]);
+        let count = exact.as_ref().map_or(0, |exact| exact.numbers.len());
+        worst.see(numbers, exact.as_ref(), &moved, &[0..count.min(3), count.min(3)..count], || format!("u {u:?}"));
     }
     worst.held()
 }

@@ -1,5 +1,6 @@
 //! Is f32 as good as f64, but for what rounding explains?
 
+mod partings;
 mod paths;
 mod shaders;
 

@@ -78,7 +78,7 @@ fn worlds_far_away_are_the_same_in_f64() {
     pooled("1e3 sizes away", hard_with("1e3 sizes away"));
 }
 
-/// The comparison is no stricter than it says, nor empty.
+/// What a page asks for.
 #[test]
 fn a_case_is_found_by_its_name() {
     let case = named("diffuse/rectangle/pinhole/bidirectional/power").expect("a case");

@@ -25,6 +25,11 @@ fn surfaces_sample_the_same_in_f64() {
 }
 
 #[test]
+fn functions_of_the_kernel_are_the_same_in_f64() {
+    worst_first("functions", shader::FUNCTIONS.into_iter().map(shader::computed));
+}
+
+#[test]
 fn profiles_are_the_same_in_f64() {
     let profiles = shader::profiles();
     worst_first("profiles", profiles.iter().map(|(name, gleam)| shader::profile_evaluated(name, gleam)));

@@ -2,17 +2,23 @@
 
 use super::{
     super::{
-        kernel::{Carried, Made, Profile, Real, Spectrum, Vec2, Vec3, math::vec3, profile::Profiled},
+        kernel::{
+            Camera, Carried, Frame, Made, Point, Profile, Real, Spectrum, Vec2, Vec3,
+            camera::{FilmPlane, Perspective},
+            math::{vec2, vec3},
+            profile::Profiled,
+            warp,
+        },
         standard::{Area, Constant, Envmap, Isotropic, Spot},
     },
-    drawn, number,
+    drawn, moved, number,
     surface::Surface,
-    turned,
+    turned, vector,
 };
 use crate::{
     nudge::Nudge,
     setting::Material,
-    shader::{Gleam, Heading, TEXELS, texel},
+    shader::{Function, Gleam, Heading, TEXELS, texel},
 };
 
 /// The numbers of an answer, and the lobe that made it.
@@ -68,6 +74,54 @@ pub fn profile_sampled(gleam: &Gleam, u: [f64; 2], nudge: &Nudge) -> Option<Answ
         let direction = turned(nudge, emitted.direction);
         let Profiled { radiance, pdf } = if nudge.active() { profile.eval(Vec2::ZERO, direction) } else { emitted.profiled };
         Some(answer(direction.to_array().into_iter().chain(radiance.0).chain([pdf.0]), 0))
+    })
+}
+
+/// A function of the kernel. Directions and points are f32's before they are asked about.
+pub fn computed(function: Function, u: [f64; 5], nudge: &Nudge) -> Option<Answer> {
+    let pair = drawn(nudge, [u[0] as Real, u[1] as Real]);
+    let around = |u: [f64; 2]| bidir_kernel_f64::warp::sphere(u).to_array();
+    let [one, other] = [around([u[0], u[1]]), around([u[2], u[3]])].map(|v| turned(nudge, vector(v)));
+    let small = number(10f64.powf(-12.0 * u[4]));
+    let camera = || {
+        let film = FilmPlane::centred(vec2(16.0, 16.0), number(0.4));
+        Perspective::pinhole(Vec3::ZERO, [Vec3::X, Vec3::Y, Vec3::Z], film)
+    };
+    let whole = |v: Vec3| v.to_array().to_vec();
+    Some(match function {
+        Function::Disk => answer(warp::disk(pair).to_array(), 0),
+        Function::CosineHemisphere => answer(whole(warp::cosine_hemisphere(pair)), 0),
+        Function::Sphere => answer(whole(warp::sphere(pair)), 0),
+        // What lies across a narrow cone's axis is told apart from what lies along it.
+        Function::Cone => {
+            let v = warp::cone(pair, small);
+            answer([v.x, v.y, 0.0, v.z], 0)
+        }
+        Function::OneMinusCos => answer([warp::one_minus_cos(small)], 0),
+        Function::Triangle => answer(warp::triangle(pair).to_array(), 0),
+        Function::Frame => {
+            let frame = Frame::from_z(one);
+            answer([whole(frame.x), whole(frame.y)].concat(), 0)
+        }
+        Function::TangentFrame => {
+            let frame = Frame::from_z_and_tangent(one, other);
+            answer([whole(frame.x), whole(frame.y)].concat(), 0)
+        }
+        Function::DirectionTo => {
+            let far = number(10f64.powf(6.0 * u[4] - 3.0));
+            let (from, to) = (moved(nudge, other), moved(nudge, other + one * far));
+            let (direction, squared) = Point::free(from).direction_to(&Point::free(to))?;
+            answer(whole(direction).into_iter().chain([squared]), 0)
+        }
+        Function::Look => {
+            let seen = camera().look(vec2(pair[0], pair[1]) * 16.0, [0.5; 2]);
+            answer(whole(seen.direction).into_iter().chain([seen.spread.value()]), 0)
+        }
+        Function::See => {
+            let at = vec3(pair[0] - 0.5, pair[1] - 0.5, number(0.5 + u[2]));
+            let seen = camera().see(&Point::free(at), [0.5; 2])?;
+            answer([seen.raster.x, seen.raster.y, 16.0, seen.spread.value()], 0)
+        }
     })
 }
 

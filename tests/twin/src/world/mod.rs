@@ -8,7 +8,7 @@ mod record;
 mod scene;
 mod surface;
 
-pub use ask::{Answer, evaluated, profile_evaluated, profile_sampled, sampled};
+pub use ask::{Answer, computed, evaluated, profile_evaluated, profile_sampled, sampled};
 pub use scene::World;
 
 use super::kernel::{Real, Vec3, math::vec3};

@@ -101,7 +101,9 @@ impl Surface {
         if !nudge.active() {
             return whichever!(self, shader => shader.sample(wo, u, carried));
         }
-        let (from, u) = (turned(nudge, wo), drawn(nudge, u));
+        // The third number is compared with a chance, and nothing else.
+        let (from, [x, y]) = (turned(nudge, wo), drawn(nudge, [u[0], u[1]]));
+        let u = [x, y, u[2]];
         let mut sampled = whichever!(self, shader => shader.sample(from, u, carried))?;
         sampled.wi = turned(nudge, sampled.wi);
         match &mut sampled.made {
