@@ -62,12 +62,12 @@ pub fn hard() -> impl Iterator<Item = Case> {
             plan: Plan { techniques: Set::Bidirectional, heuristic, max_depth: 72, rr_depth: 1_000 },
             samples: 500,
         });
-    let glossy = [1e-6, 1.0, 1e6].into_iter().flat_map(|scale| {
-        [0.3, 0.02].into_iter().map(move |alpha| Case {
+    let glossy = [1e-12, 1e-6, 1.0, 1e6, 1e12].into_iter().flat_map(|scale| {
+        [0.3, 0.02, 1e-4].into_iter().map(move |alpha| Case {
             name: format!("64 glossy bounces, α = {alpha}, at scale {scale:e}"),
             setting: furnace(Material::RoughMirror((Slopes::Ggx, [alpha; 2]))).placed(scale, 0.0),
             plan: Plan { techniques: Set::Bidirectional, heuristic: Sharing::Power, max_depth: 66, rr_depth: 1_000 },
-            samples: 40,
+            samples: 20,
         })
     });
     let placed = [("scale 1e-6", 1e-6, 0.0), ("scale 1e6", 1e6, 0.0), ("1e3 sizes away", 1.0, 1e3)];

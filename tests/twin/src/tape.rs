@@ -1,8 +1,10 @@
 //! What one sample met and contributed, in numbers of neither world.
 
-/// What contributions are compared from on; lights send out about 1. f32 ends at 1e-38, and a lobe's far tail times the
-/// 1/d² of the smallest world is no number of any digits before that.
+/// What contributions are compared from on; lights send out about 1.
 const NOTHING: f64 = 1e-18;
+
+/// f32 has lost digits below 1e-38. A lobe's far tail reaches there, and is multiplied by 1/d² only then.
+const LEAST: f64 = 1e-34;
 
 /// One sample, from beginning to end.
 #[derive(Clone, Debug, Default)]
@@ -62,9 +64,10 @@ impl Given {
 }
 
 impl Tape {
-    /// Keeps a contribution, if it is more than [`NOTHING`] or no number.
-    pub fn give(&mut self, given: Given) {
-        if !given.value.iter().all(|band| band.abs() <= NOTHING) {
+    /// Keeps a contribution, if it is more than nothing in a world of this scale, or no number.
+    pub fn give(&mut self, given: Given, scale: f64) {
+        let nothing = NOTHING.max(LEAST / (scale * scale));
+        if !given.value.iter().all(|band| band.abs() <= nothing) {
             self.given.push(given);
         }
     }

@@ -74,13 +74,16 @@ impl Bsdf for Watched<'_> {
 }
 
 /// A film that keeps every contribution apart.
-pub struct Kept<'a>(pub &'a Recorder);
+pub struct Kept<'a> {
+    pub recorder: &'a Recorder,
+    pub scale: f64,
+}
 
 impl Film for Kept<'_> {
     fn add(&mut self, contribution: Contribution) {
         let Contribution { value, weight, technique } = contribution;
         let given = Given { s: technique.s, t: technique.t, value: value.0.map(f64::from), weight: f64::from(weight) };
-        self.0.tape.borrow_mut().give(given);
+        self.recorder.tape.borrow_mut().give(given, self.scale);
     }
 
     fn splat(&mut self, _: Vec2, contribution: Contribution) {

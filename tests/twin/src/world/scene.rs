@@ -63,8 +63,9 @@ impl<'a> World<'a> {
         let [x, y] = sampler.next_pair();
         let raster = vec2(x, y) * eye::RESOLUTION;
         let store = || (1..plan.max_depth).map(|_| None).collect::<Vec<Option<WalkVertex<'_, Watched<'_>>>>>();
+        let mut film = Kept { recorder, scale: self.setting.scale };
         let (mut camera_path, mut light_path) = (store(), store());
-        sample(&scene, &strategy, &mut sampler, raster, &mut camera_path, &mut light_path, &mut Kept(recorder));
+        sample(&scene, &strategy, &mut sampler, raster, &mut camera_path, &mut light_path, &mut film);
     }
 }
 
