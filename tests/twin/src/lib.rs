@@ -12,6 +12,9 @@
 //! setting → world (twice) → tape → parting → tally → held
 //! ```
 
+#![allow(clippy::duplicate_mod, reason = "the world is one source in two precisions")]
+#![allow(clippy::neg_cmp_op_on_partial_ord, reason = "`!(x <= bound)` holds for NaN too")]
+
 pub mod case;
 pub mod double;
 pub mod geometry;

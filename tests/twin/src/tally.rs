@@ -42,6 +42,8 @@ pub struct Tally {
     pub parted_nudged: f64,
     /// Contributions compared.
     pub compared: u64,
+    /// The same by join: light hits, next events, connections, lens splats, lens hits.
+    pub joins: [u64; 5],
     /// Contributions at an edge, where a moved run parts: whether light gets there is for rounding to say.
     pub edges: u64,
     /// The largest |w32 − w64|.
@@ -102,6 +104,7 @@ impl Tally {
         self.parted += other.parted;
         self.parted_nudged += other.parted_nudged;
         self.compared += other.compared;
+        self.joins.iter_mut().zip(other.joins).for_each(|(sum, part)| *sum += part);
         self.edges += other.edges;
         self.weight_difference = self.weight_difference.max(other.weight_difference);
         self.first = self.first.take().or(other.first);
@@ -184,6 +187,7 @@ impl Tally {
             }
         }
         self.compared += 1;
+        self.joins[join(double)] += 1;
         let most = |of: &dyn Fn(&Given) -> f64| others.iter().map(|other| of(other)).fold(0.0, f64::max);
         let weight = |other: &Given| (other.weight - double.weight).abs();
         let value = |other: &Given| relative(&other.value, &double.value);
@@ -202,6 +206,17 @@ impl Tally {
         self.together[0] += single.light() - double.light();
         self.together[1] += most(&|other| (other.light() - double.light()).abs());
         self.together[2] += double.light();
+    }
+}
+
+/// Which of the five kinds of join.
+fn join(given: &Given) -> usize {
+    match (given.s, given.t) {
+        (0, _) => 0,
+        (_, 0) => 4,
+        (_, 1) => 3,
+        (1, _) => 1,
+        _ => 2,
     }
 }
 

@@ -18,8 +18,8 @@ fn pooled(what: &str, cases: impl Iterator<Item = Case>) -> Tally {
         count += 1;
     }
     println!(
-        "{what}: {count} cases, {} samples, {} contributions, {} more at edges, largest |w32 − w64| {:.1e}",
-        all.samples, all.compared, all.edges, all.weight_difference
+        "{what}: {count} cases, {} samples, {} contributions {:?} by join, {} more at edges, largest |w32 − w64| {:.1e}",
+        all.samples, all.compared, all.joins, all.edges, all.weight_difference
     );
     hold(what, &all.held());
     all
@@ -47,7 +47,8 @@ fn light_tracing_is_the_same_in_f64() {
 
 #[test]
 fn bidirectional_paths_with_the_balance_heuristic_are_the_same_in_f64() {
-    pooled("bidirectional, balance", planned(Set::Bidirectional, Sharing::Balance));
+    let all = pooled("bidirectional, balance", planned(Set::Bidirectional, Sharing::Balance));
+    assert!(all.joins.iter().all(|count| *count > 0), "a join is never compared: {:?}", all.joins);
 }
 
 #[test]
