@@ -51,8 +51,7 @@ pub(super) struct Owned<T> {
 }
 
 /// How rays meet triangles.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum, serde::Serialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Triangles {
     /// No ray passes between triangles that share an edge or a corner.
     #[default]
