@@ -59,6 +59,14 @@ pub fn read(file: &Path, form: Form) -> Subject {
     Subject { description, scene }
 }
 
+/// Reads the content of a scene that may name the files beside the others.
+pub fn read_text(content: &str) -> Subject {
+    let text = format!(r#"<scene version="3.0.0">{content}</scene>"#);
+    let loaded = load::load_str(&text, Path::new("case.xml"), Some(&folder()), &[], &library()).expect("a good scene");
+    let scene = Scene::new(&loaded.description).expect("a scene");
+    Subject { description: loaded.description, scene }
+}
+
 /// Everything that the files of a case say must hold.
 pub fn run(number: u32, form: Form) -> Vec<Held> {
     let files = of_case(number);

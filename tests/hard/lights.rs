@@ -214,10 +214,11 @@ fn many(form: Form) -> Vec<Held> {
         let view = View::new(&scene, Strictness::Strict);
         let lit = Point::free(Vec3::new(0.1, 0.2, 0.3));
         let mut sum_off = 0.0;
-        let mut disagreements = 0;
+        let (mut disagreements, mut never) = (0, 0);
         for receiver in [None, Some(&lit)] {
-            let chances = (0..100_000).map(|i| f64::from(view.light_chance(LightId(i), receiver).0));
-            sum_off = worse(sum_off, (chances.sum::<f64>() - 1.0).abs());
+            let chances: Vec<_> = (0..100_000).map(|i| f64::from(view.light_chance(LightId(i), receiver).0)).collect();
+            sum_off = worse(sum_off, (chances.iter().sum::<f64>() - 1.0).abs());
+            never += chances.iter().filter(|chance| **chance <= 0.0).count();
             for _ in 0..20_000 {
                 let picked = view.pick_light(receiver, dice.number());
                 disagreements +=
@@ -226,6 +227,7 @@ fn many(form: Form) -> Vec<Held> {
         }
         vec![
             Held::new("distance of the sum of 1e5 chances from 1", sum_off, 1e-6),
+            Held::none("lights that shine and are never picked", never),
             Held::none("of 40,000 picks, those whose chance is 0 or another when asked afterwards", disagreements),
         ]
     })

@@ -1,12 +1,11 @@
 //! Rows 1 to 16: surfaces.
 
-use std::{f32::consts::TAU, path::Path, sync::Arc};
+use std::{f32::consts::TAU, sync::Arc};
 
 use bidir::{
     check::{self, Linked, Plugin, Promises, Report, Set, Settings, Surfaces, Test},
-    load,
     plugin::{Engine, Module, Strictness, Value},
-    scene::{Scene, view::View},
+    scene::view::View,
 };
 use bidir_kernel::{
     Bsdf, Camera, Carried, Light, Lobe, Made, Point, Ray, Sampler, Scattered, Scene as _, Segment, Spectrum, Vec2, Vec3,
@@ -20,7 +19,7 @@ use super::{
     worse,
 };
 use crate::{
-    pictures::{BDPT, PATH, Subject},
+    pictures::{BDPT, PATH, Subject, mean_of},
     scenes::{self, bsdf, float, rgb},
 };
 
@@ -36,8 +35,8 @@ pub(super) const CASES: &[Case] = &[
         number: 2,
         what: "α = 1e-6 against a delta lobe",
         seen: "pbrt-v3 214",
-        must: "nears the mirror monotonically",
-        run: to_the_mirror,
+        must: "nears the mirror's picture monotonically",
+        run: |form| [to_the_mirror(form), to_its_picture(form)].concat(),
     },
     Case {
         number: 3,
@@ -95,9 +94,7 @@ pub(super) const CASES: &[Case] = &[
 fn asked<T>(form: Form, material: &str, ask: impl FnOnce(&dyn Bsdf) -> T) -> T {
     let kind = if form == Form::Sandbox { ".wasm" } else { "" };
     let sheet = scenes::shape("rectangle", "", &material.replace("$kind", kind));
-    let text = format!(r#"<scene version="3.0.0">{}{sheet}</scene>"#, scenes::pinhole());
-    let description = load::load_str(&text, Path::new("surface.xml"), None, &[], &library()).expect("a good scene").description;
-    let scene = Scene::new(&description).expect("a scene");
+    let Subject { scene, .. } = files::read_text(&(scenes::pinhole() + &sheet));
     let view = View::new(&scene, Strictness::Strict);
     let down = Ray {
         origin: Vec3::new(0.1, 0.2, 1.0) - scene.origin().as_vec3(),
@@ -262,6 +259,29 @@ fn to_the_mirror(form: Form) -> Vec<Held> {
     ]
 }
 
+/// Mean distances of pixels from those of a mirror, under an even gradient, as shares of the mean.
+fn to_its_picture(form: Form) -> Vec<Held> {
+    let kind = if form == Form::Sandbox { ".wasm" } else { "" };
+    let picture = |material: String| {
+        let sky = scenes::emitter("envmap", r#"<string name="filename" value="sky.exr"/>"#);
+        let content = [scenes::depth(2), scenes::pinhole(), scenes::ball(&material.replace("$kind", kind)), sky].concat();
+        image(&files::read_text(&content), PATH, 256)
+    };
+    let mirror = picture(of("conductor", ""));
+    let mean = mean_of(&mirror);
+    let distance = |alpha: f64| {
+        let rough = picture(of("roughconductor", &ggx(alpha)));
+        let off = mirror.pixels.iter().flatten().zip(rough.pixels.iter().flatten()).map(|(a, b)| f64::from((a - b).abs()));
+        off.sum::<f64>() / (3.0 * mirror.pixels.len() as f64 * mean)
+    };
+    let distances = [0.3, 0.1, 0.03, 0.01, 1e-6].map(distance);
+    let growth = distances.windows(2).map(|pair| pair[1] - pair[0]).fold(f64::NEG_INFINITY, worse);
+    vec![
+        Held::new("largest step of the picture away from the mirror's as α falls from 0.3 to 1e-6", growth, 0.0),
+        Held::new("distance of the picture from the mirror's at α = 1e-6, relatively", distances[4], 1e-4),
+    ]
+}
+
 /// A rough surface without roughness is the smooth one, bit by bit.
 fn no_roughness(form: Form) -> Vec<Held> {
     let pairs = [
@@ -420,11 +440,8 @@ fn nested(form: Form) -> Vec<Held> {
     let parts = [shell(0.8, 1.5, 1.0), shell(0.6, 1.33, 1.5), shell(0.4, 1.0, 1.33), block(), block()];
     let picture = |order: &[usize]| {
         let things: String = order.iter().map(|i| parts[*i].as_str()).collect();
-        let text = [scenes::depth(12), scenes::pinhole(), things, scenes::room(), scenes::panel()].concat().replace("$kind", kind);
-        let text = format!(r#"<scene version="3.0.0">{text}</scene>"#);
-        let description = load::load_str(&text, Path::new("nested.xml"), None, &[], &library()).expect("a good scene").description;
-        let scene = Scene::new(&description).expect("a scene");
-        let subject = Subject { description, scene };
+        let content = [scenes::depth(12), scenes::pinhole(), things, scenes::room(), scenes::panel()].concat().replace("$kind", kind);
+        let subject = files::read_text(&content);
         [PATH, BDPT].map(|techniques| image(&subject, techniques, 16))
     };
     let first = picture(&[0, 1, 2, 3, 4]);
