@@ -144,7 +144,8 @@ impl Ray {
 
     /// Whether the segment from `a` to `b`, once both ends are moved off their surfaces, still lies on the sides of them that it did.
     /// Of two points nearly in one plane, rounding alone may tell which side of a surface the one is on from the other: one on the front
-    /// and one on the back would then see each other through the surface, which is edge-on to the ray.
+    /// and one on the back would then see each other through the surface, which is edge-on to the ray. What is refused with them, of
+    /// pairs on one side, has a cosine as small as a rounding.
     #[inline]
     pub fn keeps_sides(a: &Point, b: &Point) -> bool {
         let (before, after) = (b.position - a.position, Self::between(a, b, Segment::Inner).direction);

@@ -17,12 +17,10 @@ pub trait Sums: Sized {
     fn start(heuristic: Heuristic, end: f64, hit: f64) -> Self;
     /// See [`Side::advance`].
     fn advance(&self, heuristic: Heuristic, step: &Step) -> Self;
-    /// See [`Side::closed`].
-    fn closed(&self, heuristic: Heuristic, pdf_rev: f64) -> f64;
     /// See [`Side::sum`].
     fn sum(&self, heuristic: Heuristic, across: f64, pdf_rev: f64) -> f64;
-    /// See [`Side::per_forward`].
-    fn per_forward(&self) -> f64;
+    /// See [`Side::sum_of_hit`].
+    fn sum_of_hit(&self, heuristic: Heuristic, end: f64, pdf_rev: f64, instead: f64) -> f64;
 }
 
 impl Sums for Side {
@@ -34,16 +32,12 @@ impl Sums for Side {
         Side::advance(self, heuristic, step)
     }
 
-    fn closed(&self, heuristic: Heuristic, pdf_rev: f64) -> f64 {
-        Side::closed(self, heuristic, pdf_rev)
-    }
-
     fn sum(&self, heuristic: Heuristic, across: f64, pdf_rev: f64) -> f64 {
         Side::sum(self, heuristic, across, pdf_rev)
     }
 
-    fn per_forward(&self) -> f64 {
-        Side::per_forward(self)
+    fn sum_of_hit(&self, heuristic: Heuristic, end: f64, pdf_rev: f64, instead: f64) -> f64 {
+        Side::sum_of_hit(self, heuristic, end, pdf_rev, instead)
     }
 }
 
@@ -217,8 +211,7 @@ impl Path {
                     (true, 1) => heuristic.of(techniques.lens_splat * self.light_end),
                     (true, _) => heuristic.of(techniques.next_event * self.next_event_end),
                 };
-                let closed = heuristic.of(self.light_end) * side.closed(heuristic, self.to_lens[0]);
-                share(own, side.per_forward() * (instead + closed))
+                share(own, side.sum_of_hit(heuristic, self.light_end, self.to_lens[0], instead))
             }
             Join::NextEvent => {
                 let hit = if self.delta[0] { 0.0 } else { heuristic.of(techniques.light_hit * self.made_by_camera(0)) };

@@ -63,15 +63,13 @@ impl oracle::Sums for SingleSide {
         self.advance(heuristic == Heuristic::Power, step)
     }
 
-    fn closed(&self, heuristic: Heuristic, pdf_rev: f64) -> f64 {
-        f64::from(times(times(of(heuristic == Heuristic::Power, pdf_rev), self.back), self.earlier))
-    }
-
     fn sum(&self, heuristic: Heuristic, across: f64, pdf_rev: f64) -> f64 {
         f64::from(self.sum(heuristic == Heuristic::Power, across, pdf_rev))
     }
 
-    fn per_forward(&self) -> f64 {
-        f64::from(self.per_forward)
+    fn sum_of_hit(&self, heuristic: Heuristic, end: f64, pdf_rev: f64, instead: f64) -> f64 {
+        let power = heuristic == Heuristic::Power;
+        let closed = times(times(of(power, pdf_rev), self.back), self.earlier);
+        f64::from(self.per_forward * (instead as f32 + of(power, end) * closed))
     }
 }
