@@ -26,8 +26,10 @@ const MOST: usize = 6;
 /// Directions tried before a vertex is given up.
 const TRIES: usize = 4;
 
-/// Draws that look for the way back of a delta sample. Chances below one in `RARE` are left alone.
+/// Draws that look for the way back of a delta sample.
 const DRAWS: usize = 256;
+
+/// Chances below this are left alone: their way back is seldom drawn.
 const RARE: f64 = 0.05;
 
 /// A density or chance of going on, and of going back.
