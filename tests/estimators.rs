@@ -7,6 +7,7 @@ use bidir_kernel::{Heuristic, Techniques};
 
 use crate::{
     pictures::{BATCHES, BDPT, LIGHT, PATH, Pictures, Subject, leave},
+    statistics::worse,
     statistics::{Estimate, threshold},
 };
 
@@ -61,12 +62,17 @@ impl Agreement {
 
     /// The largest deviation, as a share of what chance explains.
     pub fn worst(&self) -> f64 {
-        self.differences.iter().map(|(_, difference)| difference.deviation / difference.threshold).fold(0.0, f64::max)
+        self.differences.iter().map(|(_, difference)| difference.deviation / difference.threshold).fold(0.0, worse)
     }
 
     /// The largest doubt about a mean, as a share of it; infinite for a black picture.
     pub fn doubt(&self) -> f64 {
-        self.means.iter().map(|(_, mean)| if mean.mean > 0.0 { mean.error / mean.mean } else { f64::INFINITY }).fold(0.0, f64::max)
+        self.means.iter().map(|(_, mean)| if mean.mean > 0.0 { mean.error / mean.mean } else { f64::INFINITY }).fold(0.0, worse)
+    }
+
+    /// The largest difference of two means, as a share of them.
+    pub fn apart(&self) -> f64 {
+        self.differences.iter().map(|(_, difference)| difference.whole.abs()).fold(0.0, worse)
     }
 }
 
@@ -83,7 +89,7 @@ pub fn agree_after(effort: u32, name: &str, subject: &Subject, estimators: &[Est
     for ((other, found), (_, picture)) in agreement.differences.iter().zip(&agreement.pictures[1..]) {
         let line = format!("{name}: {other} − {first} over {BATCHES} batches: {found}");
         println!("{line}");
-        if found.deviation > found.threshold {
+        if worse(found.deviation, found.threshold) != found.threshold {
             failures.push(line);
             leave(name, &[(other, &picture.average()), (first, &reference.average())]);
         }
@@ -128,7 +134,8 @@ pub fn difference(a: &Pictures, b: &Pictures) -> Difference {
         let (x, y) = (a.mean(*region, bands), b.mean(*region, bands));
         let apart = x.minus(&y);
         let (deviation, threshold) = (apart.deviation(x.mean), threshold(places.len(), apart.degrees));
-        if deviation / threshold > worst.deviation / worst.threshold {
+        let (found, known) = (deviation / threshold, worst.deviation / worst.threshold);
+        if worse(known, found).to_bits() != known.to_bits() {
             worst = Difference { place: format!("{region:?} bands {bands:?}"), deviation, threshold, ..worst };
         }
     }

@@ -20,11 +20,12 @@ use super::{
     chains::{Chain, GLOSSY, SPECULAR},
     file,
     files::{bad, different, image},
+    native,
     transforms::alike,
-    worse,
 };
+use crate::statistics::worse;
 use crate::{
-    pictures::{BDPT, LIGHT, PATH, Subject},
+    pictures::{BDPT, LIGHT, PATH, Pictures, Subject},
     scenes::{area, ball, camera, depth, diffuse, emitter, film, film_with, float, panel, pinhole, read, rgb, room},
     statistics::threshold,
 };
@@ -82,10 +83,6 @@ pub(super) const CASES: &[Case] = &[
     },
 ];
 
-fn native(form: Form, held: impl FnOnce() -> Vec<Held>) -> Vec<Held> {
-    if form == Form::Native { held() } else { Vec::new() }
-}
-
 fn seen_by(sensor: &str) -> Subject {
     read(&[depth(5), sensor.to_owned(), room(), ball(&diffuse("0.6, 0.4, 0.3")), panel()].concat())
 }
@@ -109,29 +106,34 @@ fn small_lens(form: Form) -> Vec<Held> {
 fn every_pixel(form: Form) -> Vec<Held> {
     native(form, || {
         let held = |filter: &str| {
-            let lamp = crate::scenes::shape(
-                "rectangle",
-                r#"<scale value="0.35"/><translate value="0.2, 0.9, 0"/>"#,
-                &(diffuse("0, 0, 0") + &area(3.0)),
-            );
-            let sensor = camera("perspective", &film_with(16, 12, filter));
-            let subject = read(&[depth(2), sensor, room(), lamp].concat());
+            let subject = edges(filter);
             let of = |techniques, samples, seed| subject.pictures(subject.strategy(techniques, Heuristic::Balance), samples, seed);
-            let (path, light) = (of(PATH, 64, 1), of(LIGHT, 512, 2));
-            let pixels = (0..12).flat_map(|y| (0..16).map(move |x| [x, y, 1, 1]));
-            let deviation = |pixel| {
-                let (one, other) = (path.mean(pixel, &[0, 1, 2]), light.mean(pixel, &[0, 1, 2]));
-                let apart = other.minus(&one);
-                apart.deviation(one.mean) / threshold(192, apart.degrees)
-            };
-            Held::new(
-                format!("{filter}: worst pixel's deviation, as a share of what chance explains"),
-                pixels.map(deviation).fold(0.0, worse),
-                1.0,
-            )
+            pixel_by_pixel(filter, &of(PATH, 64, 1), &of(LIGHT, 512, 2))
         };
-        [r#"<rfilter type="box"/>"#, r#"<rfilter type="gaussian"/>"#].map(held).to_vec()
+        [BOX, r#"<rfilter type="gaussian"/>"#].map(held).to_vec()
     })
+}
+
+/// The box filter.
+pub const BOX: &str = r#"<rfilter type="box"/>"#;
+
+/// A lamp before a dark floor, with its edges.
+pub fn edges(filter: &str) -> Subject {
+    let lamp =
+        crate::scenes::shape("rectangle", r#"<scale value="0.35"/><translate value="0.2, 0.9, 0"/>"#, &(diffuse("0, 0, 0") + &area(3.0)));
+    let sensor = camera("perspective", &film_with(16, 12, filter));
+    read(&[depth(2), sensor, room(), lamp].concat())
+}
+
+/// The worst pixel of two pictures of [`edges`].
+pub fn pixel_by_pixel(what: &str, one: &Pictures, other: &Pictures) -> Held {
+    let pixels = (0..12).flat_map(|y| (0..16).map(move |x| [x, y, 1, 1]));
+    let deviation = |pixel| {
+        let (one, other) = (one.mean(pixel, &[0, 1, 2]), other.mean(pixel, &[0, 1, 2]));
+        let apart = other.minus(&one);
+        apart.deviation(one.mean) / threshold(192, apart.degrees)
+    };
+    Held::new(format!("{what}: worst pixel's deviation, as a share of what chance explains"), pixels.map(deviation).fold(0.0, worse), 1.0)
 }
 
 fn cropped(form: Form) -> Vec<Held> {
@@ -145,7 +147,19 @@ fn cropped(form: Form) -> Vec<Held> {
             let differ = inside.filter(|(x, y)| part.at(*x, *y) != whole.at(x + 9, y + 5)).count();
             Held::none(format!("{filter}: pixels that differ"), differ)
         };
-        [(r#"<rfilter type="box"/>"#, 0), (r#"<rfilter type="gaussian"/>"#, 2)].map(held).to_vec()
+        let splats = |techniques| {
+            let of = |content: &str, seed| {
+                let subject = seen_by(&camera("perspective", &film_with(40, 30, content)));
+                subject.pictures(subject.strategy(techniques, Heuristic::Balance), 16, seed)
+            };
+            let (whole, part) = (of(BOX, 1), of(&(window.clone() + BOX), 2));
+            let (wanted, found) = (whole.mean([9, 5, 20, 18], &[0, 1, 2]), part.mean(part.whole(), &[0, 1, 2]));
+            let apart = found.minus(&wanted);
+            let deviation = apart.deviation(wanted.mean) / threshold(2, apart.degrees);
+            Held::new("the window's mean with splats: deviation, as a share of what chance explains", deviation, 1.0)
+        };
+        let bits = [(BOX, 0), (r#"<rfilter type="gaussian"/>"#, 2)].map(held);
+        [&bits[..], &[splats(LIGHT), splats(BDPT)]].concat()
     })
 }
 

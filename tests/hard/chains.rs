@@ -3,8 +3,8 @@
 use super::{
     Held,
     single::oracle::{Numbers, Path, Sums, distances, sets},
-    worse,
 };
+use crate::statistics::worse;
 
 /// Of a chain: how densely its surfaces send light on, and how far apart they lie.
 #[derive(Clone, Copy, Debug)]

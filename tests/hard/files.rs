@@ -135,6 +135,7 @@ fn agree(name: &str, subject: &Subject, which: &str, effort: u32) -> Vec<Held> {
             1.0,
         ),
         Held::new(format!("{name}: standard error of a mean, as a share of it"), agreement.doubt(), DOUBT),
+        Held::new(format!("{name}: difference of two means, as a share of them"), agreement.apart(), (4.0 * agreement.doubt()).max(0.01)),
     ]
 }
 
@@ -174,5 +175,5 @@ pub fn different(a: &Image, b: &Image) -> usize {
 
 fn twins(name: &str, native: &Subject, sandboxed: &Subject) -> Held {
     let differ = |techniques| different(&image(native, techniques, 8), &image(sandboxed, techniques, 8));
-    Held::none(format!("{name}: pixels that differ from the native picture"), differ(PATH) + differ(BDPT))
+    Held::none(format!("{name}: pixels that differ from the native picture"), differ(PATH) + differ(LIGHT) + differ(BDPT))
 }

@@ -18,6 +18,7 @@ use super::{
     Case, Form, Held, file,
     files::{self, bad, different, image},
     lights::Dice,
+    native,
     transforms::{Change, alike, changed},
 };
 use crate::{
@@ -57,10 +58,6 @@ pub(super) const CASES: &[Case] = &[
         run: leaks,
     },
 ];
-
-fn native(form: Form, held: impl FnOnce() -> Vec<Held>) -> Vec<Held> {
-    if form == Form::Native { held() } else { Vec::new() }
-}
 
 /// Of `slivers.obj`: two have no area, and a corner of one is no number.
 fn dropped(form: Form) -> Vec<Held> {
@@ -117,6 +114,10 @@ pub fn anchored(mut description: Description, away: DVec3) -> Description {
     description
 }
 
+fn camera_at_a_million() -> String {
+    pinhole().replace("0, 1.2, 4", "1e6, 5, 40").replace("0, 0.8, 0", "1e6, 0, 0")
+}
+
 fn far_away(form: Form) -> Vec<Held> {
     native(form, || {
         let small = scenes::read(&[depth(5), pinhole(), room(), ball(&diffuse("0.6, 0.4, 0.3")), scenes::panel()].concat());
@@ -126,12 +127,24 @@ fn far_away(form: Form) -> Vec<Held> {
         let walls = shape("cube", r#"<scale value="50"/><translate value="1e6, 0, 0"/>"#, &diffuse("0.9, 0.9, 0.9"));
         let within = shape("sphere", r#"<scale value="20"/><translate value="1e6, 0, -20"/>"#, &diffuse("0.9, 0.9, 0.9"));
         let sky = emitter("constant", &rgb("radiance", "1e6, 1e6, 1e6"));
-        let camera = pinhole().replace("0, 1.2, 4", "1e6, 5, 40").replace("0, 0.8, 0", "1e6, 0, 0");
-        let description = scenes::read(&[depth(64), camera, walls, within, sky].concat()).description;
+        let description = scenes::read(&[depth(64), camera_at_a_million(), walls, within, sky].concat()).description;
         let description = anchored(description, DVec3::new(1e6, 0.0, 0.0));
         let scene = Scene::new(&description).expect("a scene");
         let dark = Subject { description, scene };
         let pictures = [PATH, LIGHT, BDPT].map(|techniques| image(&dark, techniques, 64));
+        // A bright one: each wall sends out 1 and half of what arrives. Acne or lost light would show in the mean.
+        let walls = r#"<boolean name="flip_normals" value="true"/>"#.to_owned()
+            + &diffuse("0.5, 0.5, 0.5")
+            + &emitter("area", &rgb("radiance", "1, 1, 1"));
+        let furnace = shape("sphere", r#"<scale value="50"/><translate value="1e6, 0, 0"/>"#, &walls);
+        let description = scenes::read(&[depth(-1), camera_at_a_million(), furnace].concat()).description;
+        let description = anchored(description, DVec3::new(1e6, 0.0, 0.0));
+        let scene = Scene::new(&description).expect("a scene");
+        let bright = Subject { description, scene };
+        for (name, techniques) in [("path", PATH), ("bdpt", BDPT)] {
+            let found = bright.pictures(bright.strategy(techniques, Heuristic::Balance), 64, 1);
+            held.extend(files::known(&format!("a furnace at 1e6, {name}"), &found.mean(found.whole(), &[0, 1, 2]), 2.0, 0.01));
+        }
         held.push(Held::none("bad values in a dark room at 1e6", pictures.iter().map(bad).sum()));
         let lit = |picture: &bidir::image::Image| picture.pixels.iter().filter(|pixel| **pixel != [0.0; 3]).count();
         held.push(Held::none("pixels of a dark room at 1e6 that the sky leaks into", pictures.iter().map(lit).sum()));
@@ -179,7 +192,8 @@ pub(crate) fn globe_scene(radius: f64, centre: f64, triangles: Triangles) -> (Sc
     let mesh = r#"<shape type="obj"><string name="filename" value="globe.obj"/></shape>"#;
     let text = format!(r#"<scene version="3.0.0">{}{mesh}</scene>"#, pinhole());
     let read = load::load_str(&text, Path::new("globe.xml"), Some(folder.path()), &[], &Library::default());
-    let description = anchored(read.expect("a good scene").description, DVec3::new(centre, 0.0, 0.0));
+    let description = read.expect("a good scene").description;
+    let description = if centre == 0.0 { description } else { anchored(description, DVec3::new(centre, 0.0, 0.0)) };
     let Geometry::Mesh { mesh, .. } = description.shapes[0].geometry.clone() else { panic!("no mesh") };
     (Scene::new(&description).expect("a scene").with_triangles(triangles), mesh)
 }

@@ -5,7 +5,6 @@ use std::{env, fs, path::Path, process::ExitCode};
 use bidir_tests::hard::{
     cases, guards,
     page::{Row, page},
-    twin,
 };
 
 fn main() -> ExitCode {
@@ -14,7 +13,7 @@ fn main() -> ExitCode {
         return ExitCode::from(2);
     };
     let ask = |case: &bidir_tests::hard::Case| {
-        let row = Row::of(case, twin::of_case(case.number));
+        let row = Row::of(case);
         println!("{row}");
         row
     };

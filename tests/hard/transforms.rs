@@ -12,8 +12,8 @@ use glam::{DAffine3, DMat3, DQuat, DVec3};
 use super::{
     Held,
     files::{ESTIMATORS, image},
-    worse,
 };
+use crate::statistics::worse;
 use crate::{
     estimators::difference,
     pictures::{Subject, mean_of},

@@ -13,7 +13,7 @@ use bidir_kernel::{
 use bidir_tests::{
     estimators::difference,
     hard::{
-        Form, Held, chains, files, geometry,
+        Form, Held, camera, chains, files, geometry,
         single::SingleSide,
         transforms::{Change, alike, changed},
     },
@@ -32,8 +32,8 @@ enum Guard {
     EtaSquared,
     /// Offsets that follow the rounding of a hit; this one does not.
     Offset(Real),
-    /// Splats are thrown away, and counted in the weights.
-    Splats,
+    /// The light's buffer is where the camera's is; this one is a pixel to the right.
+    Place,
 }
 
 /// A scene without a guard.
@@ -131,7 +131,7 @@ impl<'v> bidir_kernel::Scene for Undone<'v> {
     }
 }
 
-/// A buffer that may be without splats.
+/// A buffer that may be a pixel beside the other.
 struct Exposed<'a>(&'a mut TileBuffer, Guard);
 
 impl bidir_kernel::Film for Exposed<'_> {
@@ -140,9 +140,8 @@ impl bidir_kernel::Film for Exposed<'_> {
     }
 
     fn splat(&mut self, raster: Vec2, contribution: Contribution) {
-        if self.1 != Guard::Splats {
-            self.0.splat(raster, contribution);
-        }
+        let shift = if self.1 == Guard::Place { 1.0 } else { 0.0 };
+        self.0.splat(Vec2::new((raster.x + shift).min(15.99), raster.y), contribution);
     }
 }
 
@@ -264,10 +263,11 @@ fn case_29_with_a_test_that_is_not_watertight() {
 }
 
 #[test]
-fn case_46_with_splats_that_are_counted_and_not_there() {
-    let subject = scene("44_parallel_rays");
-    stays_green("with the guard", &agreement(&subject, Guard::None, BDPT));
-    turns_red("without splats", &agreement(&subject, Guard::Splats, BDPT));
+fn case_46_with_the_lights_buffer_a_pixel_to_the_right() {
+    let subject = camera::edges(camera::BOX);
+    let held = |guard| vec![camera::pixel_by_pixel("box", &pictures(&subject, guard, PATH, 64), &pictures(&subject, guard, LIGHT, 512))];
+    stays_green("with the guard", &held(Guard::None));
+    turns_red("a pixel to the right", &held(Guard::Place));
 }
 
 /// A sum that takes whatever comes, in place of the film.

@@ -235,6 +235,7 @@ impl Bvh {
         }
     }
 
+    /// Without what other hits left behind the last step.
     #[cold]
     fn trimmed(&self, leaf: Child, trail: Trail) -> Trail {
         let mut trimmed = [0; LEVELS];

@@ -105,6 +105,7 @@ impl<const ANY: bool, const FAST: bool, const NESTED: bool> Work for Descent<'_,
         }
     }
 }
+
 impl Bvh {
     /// The nearest hit, or with `ANY` whichever is found first; `trail` keeps where in an instance it is.
     #[inline(always)]
@@ -116,7 +117,6 @@ impl Bvh {
         }
     }
 
-    /// Without what other hits left behind the last step.
     #[inline(always)]
     fn descend<const ANY: bool>(&self, probe: &Probe, stack: &mut [Waiting], trail: &mut Trail) -> Option<Nearest> {
         match self.triangles {
@@ -255,6 +255,7 @@ impl Bvh {
         Some(nearest)
     }
 }
+
 /// Lanes by their bits, from the lowest up.
 struct Entered(u32);
 
