@@ -9,16 +9,16 @@ mod check;
 mod corpus;
 mod depth;
 mod furnace;
+mod hard_cases;
 mod hostile;
 mod house;
 mod instances;
 mod invariance;
-mod pictures;
 #[path = "../host/src/rays/tests/generator.rs"]
 mod random;
 mod references;
 mod sandbox;
-mod scenes;
 mod self_hits;
-mod statistics;
 mod techniques;
+
+use bidir_tests::{estimators, pictures, scenes, statistics};

@@ -46,6 +46,11 @@ impl Estimate {
     }
 }
 
+/// The larger one; not a number is larger than any.
+pub fn worse(a: f64, b: f64) -> f64 {
+    if a.is_nan() || b <= a { a } else { b }
+}
+
 /// How many standard errors are too many in any of `comparisons`, at [`LEVEL`] for all of them together:
 /// the two-sided quantile of Student's t, by its expansion about the normal one (Abramowitz & Stegun 26.7.5).
 pub fn threshold(comparisons: usize, degrees: f64) -> f64 {

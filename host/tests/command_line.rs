@@ -257,7 +257,6 @@ fn statistics_hold_what_was_promised() {
     for (key, value) in wanted {
         assert_eq!(stats[key], value, "{key}");
     }
-    assert_eq!(stats["geometry"]["triangle_test"], "watertight");
     assert!(stats["plan"].is_object() && stats["version"].is_string() && stats["integrator"] == "auto");
 }
 
@@ -271,15 +270,6 @@ fn a_plan_repeats_a_render() {
     fs::write(desk.path("plan.json"), stats["plan"].to_string()).expect("a plan");
     assert!(desk.run(&["render", "good.xml", "-o", "b.exr", "--plan", "plan.json"]).status.success());
     assert_eq!(image(&desk.path("a.exr")), image(&desk.path("b.exr")));
-}
-
-#[test]
-fn the_fast_test_of_triangles_is_a_choice() {
-    let desk = Desk::new();
-    let output = desk.run(&["render", "good.xml", "-o", "out.exr", "--spp", "1", "--triangles", "fast", "--stats", "stats.json"]);
-    assert_eq!(output.status.code(), Some(0), "{output:?}");
-    let stats: serde_json::Value = serde_json::from_str(&fs::read_to_string(desk.path("stats.json")).expect("statistics")).expect("JSON");
-    assert_eq!(stats["geometry"]["triangle_test"], "fast");
 }
 
 /// Passes grow by a quarter, so the last one may end late by as much; and a busy machine may be slow to begin.

@@ -6,6 +6,7 @@ use crate::{
     density::{Chance, conversions},
     film::{Contribution, Film},
     light::{Illumination, Light},
+    math::times,
     point::{Place, Point, Ray, Segment},
     real::{Real, Vec2, Vec3},
     roulette::survive,
@@ -156,8 +157,8 @@ impl<'s, S: Scene, P: Sampler, F: Film> CameraWalk<'_, 's, S, P, F> {
         } else {
             0.0
         };
-        let closed = if joined { heuristic.of(made) * end.side.closed(heuristic, f64::from(exit.spread.value())) } else { 0.0 };
-        let others = end.side.per_forward() * (instead + closed);
+        let end_density = if joined { made } else { 0.0 };
+        let others = end.side.sum_of_hit(heuristic, end_density, f64::from(exit.spread.value()), instead);
         self.film.add(Contribution {
             value: end.throughput * exit.radiance,
             weight: share(heuristic.of(techniques.light_hit), others) as Real,
@@ -215,7 +216,7 @@ impl<'s, S: Scene, P: Sampler, F: Film> CameraWalk<'_, 's, S, P, F> {
         if end.joined {
             let made = f64::from(self.scene.light_chance(*id, None).0) * f64::from(exit.end.value());
             let across = f64::from(exit.spread.value()) * to_vertex;
-            others += heuristic.of(made) * end.side.sum(heuristic, across, f64::from(scatter.pdf_rev.0));
+            others += times(heuristic.of(made), end.side.sum(heuristic, across, f64::from(scatter.pdf_rev.0)));
         }
         self.film.add(Contribution { value, weight: share(own, others) as Real, technique: Technique { s: 1, t: end.length + 1 } });
     }

@@ -6,7 +6,7 @@ use crate::{
     bsdf::{BATCH, Bsdf, Scatter},
     density::conversions,
     film::{Contribution, Film},
-    point::Segment,
+    point::{Ray, Segment},
     real::{Real, Vec3},
     scene::Scene,
     strategy::Strategy,
@@ -123,7 +123,7 @@ fn join<'s, S: Scene>(
     let Strategy { techniques, heuristic, .. } = *strategy;
     let ([here, there], points) = (&pair.scatters, (&near.vertex.point, &far.vertex.point));
     let value = near.throughput * here.value * (there.value * far.throughput) / pair.squared_distance;
-    if value.is_black() || !scene.unoccluded(points.0, points.1, Segment::Inner) {
+    if value.is_black() || !Ray::keeps_sides(points.0, points.1) || !scene.unoccluded(points.0, points.1, Segment::Inner) {
         return;
     }
     let (there_per, here_per) = conversions(points.0, points.1, pair.directions[NEAR]);

@@ -32,6 +32,7 @@ mod vertex;
 mod walk;
 pub mod warp;
 pub mod weight;
+mod wide;
 
 pub use bsdf::{BATCH, Bsdf, Carried, Lobe, Made, Scatter, Scattered};
 pub use camera::{Camera, Seen};

@@ -141,4 +141,15 @@ impl Ray {
         let end = if b.is_surface() { b.leave(-direction) } else { a.position + direction };
         Self { origin, direction: end - origin, t_max: 1.0, segment }
     }
+
+    /// Whether the segment from `a` to `b`, once both ends are moved off their surfaces, still lies on the sides of them that it did.
+    /// Of two points nearly in one plane, rounding alone may tell which side of a surface the one is on from the other: one on the front
+    /// and one on the back would then see each other through the surface, which is edge-on to the ray. What is refused with them, of
+    /// pairs on one side, has a cosine as small as a rounding.
+    #[inline]
+    pub fn keeps_sides(a: &Point, b: &Point) -> bool {
+        let (before, after) = (b.position - a.position, Self::between(a, b, Segment::Inner).direction);
+        let keeps = |at: &Point| !at.is_surface() || dot(before, at.normal) * dot(after, at.normal) > 0.0;
+        a.place == Place::Distant || b.place == Place::Distant || (keeps(a) && keeps(b))
+    }
 }

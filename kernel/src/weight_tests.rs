@@ -1,216 +1,18 @@
-extern crate std;
-
-use std::vec::Vec;
+#[path = "weight_oracle.rs"]
+mod oracle;
 
 use super::*;
-use crate::technique::{Join, Technique, Techniques};
-
-/// A path of length k in numbers alone. Index i is vertex x_i, x_0 on the light, x_k on the lens.
-struct Path {
-    /// Per direction (or chance): how densely x_i sends the light walk on to x_{i+1}, and the camera walk on to x_{i−1}.
-    to_lens: Vec<f64>,
-    to_light: Vec<f64>,
-    /// What turns a density at x_i into one of x_{i+1} (`forward`), at x_{i+1} into one of x_i (`backward`).
-    forward: Vec<f64>,
-    backward: Vec<f64>,
-    /// Whether the scattering at x_i is a Dirac; the endpoints': whether they cannot be hit.
-    delta: Vec<bool>,
-    /// Densities of the endpoints: x_0 by emission, by next event; x_k.
-    light_end: f64,
-    next_event_end: f64,
-    lens_end: f64,
-}
-
-struct Numbers(u64);
-
-impl Numbers {
-    fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (self.0 >> 11) as f64 / (1u64 << 53) as f64
-    }
-    fn decades(&mut self, low: f64, high: f64) -> f64 {
-        libm::exp10(low + (high - low) * self.unit())
-    }
-}
-
-impl Path {
-    fn random(k: usize, decades: f64, deltas: f64, numbers: &mut Numbers) -> Self {
-        let mut many = |n: usize| (0..n).map(|_| numbers.decades(-decades, decades)).collect::<Vec<_>>();
-        let (to_lens, to_light, forward, backward) = (many(k + 1), many(k + 1), many(k), many(k));
-        let delta = (0..=k).map(|_| numbers.unit() < deltas).collect();
-        let mut one = || numbers.decades(-decades, decades);
-        Self { to_lens, to_light, forward, backward, delta, light_end: one(), next_event_end: one(), lens_end: one() }
-    }
-
-    fn k(&self) -> usize {
-        self.delta.len() - 1
-    }
-
-    /// L_i.
-    fn made_by_light(&self, i: usize) -> f64 {
-        if i == 0 { self.light_end } else { self.to_lens[i - 1] * self.forward[i - 1] }
-    }
-
-    /// E_i.
-    fn made_by_camera(&self, i: usize) -> f64 {
-        if i == self.k() { self.lens_end } else { self.to_light[i + 1] * self.backward[i] }
-    }
-
-    /// c_s: both ends of the join must have a density, and an endpoint that is landed on must not be a Dirac.
-    fn exists(&self, s: usize) -> bool {
-        let k = self.k();
-        match s {
-            0 => !self.delta[0],
-            s if s == k + 1 => !self.delta[k],
-            s => (s == 1 || !self.delta[s - 1]) && (s == k || !self.delta[s]),
-        }
-    }
-
-    fn technique(&self, s: usize) -> Technique {
-        Technique { s: s as u32, t: (self.k() + 1 - s) as u32 }
-    }
-
-    /// ln(n_s p_s), every density multiplied out, in the log domain: the definition. Next event makes x_0 with a density of its own.
-    fn log_effort(&self, s: usize, techniques: &Techniques) -> Option<f64> {
-        let technique = self.technique(s);
-        let effort = techniques.effort(technique.join());
-        if !self.exists(s) || effort <= 0.0 {
-            return None;
-        }
-        let mut sum = libm::log(effort);
-        for i in 0..=self.k() {
-            let density = if i >= s {
-                self.made_by_camera(i)
-            } else if i == 0 && technique.join() == Join::NextEvent {
-                self.next_event_end
-            } else {
-                self.made_by_light(i)
-            };
-            sum += libm::log(density);
-        }
-        Some(sum)
-    }
-
-    fn definition(&self, s: usize, techniques: &Techniques, heuristic: Heuristic) -> f64 {
-        let power = if heuristic == Heuristic::Power { 2.0 } else { 1.0 };
-        let Some(own) = self.log_effort(s, techniques) else { return 0.0 };
-        let sum: f64 =
-            (0..=self.k() + 1).filter_map(|j| self.log_effort(j, techniques)).map(|other| libm::exp(power * (other - own))).sum();
-        1.0 / sum
-    }
-
-    /// The light walk's first `s` vertices.
-    fn light_side(&self, s: usize, techniques: &Techniques, heuristic: Heuristic) -> Side {
-        let mut side = Side::start(heuristic, self.light_end, if self.delta[0] { 0.0 } else { techniques.light_hit });
-        for i in 1..s {
-            let effort = match i {
-                i if i == self.k() => techniques.lens_splat,
-                1 => techniques.next_event * self.next_event_end / self.light_end,
-                _ => techniques.connection,
-            };
-            side = side.advance(
-                heuristic,
-                &Step {
-                    pdf: self.to_lens[i - 1],
-                    pdf_rev: if i == 1 { 0.0 } else { self.to_light[i - 1] },
-                    delta: i > 1 && self.delta[i - 1],
-                    forward: self.forward[i - 1],
-                    backward: self.backward[i - 1],
-                    effort,
-                },
-            );
-        }
-        side
-    }
-
-    /// The camera walk's first `t` vertices.
-    fn camera_side(&self, t: usize, techniques: &Techniques, heuristic: Heuristic) -> Side {
-        let k = self.k();
-        let mut side = Side::start(heuristic, self.lens_end, if self.delta[k] { 0.0 } else { techniques.lens_hit });
-        for made in 1..t {
-            let i = k - made;
-            side = side.advance(
-                heuristic,
-                &Step {
-                    pdf: self.to_light[i + 1],
-                    pdf_rev: if made == 1 { 0.0 } else { self.to_lens[i + 1] },
-                    delta: made > 1 && self.delta[i + 1],
-                    forward: self.backward[i],
-                    backward: self.forward[i],
-                    effort: if made == 1 { techniques.lens_splat } else { techniques.connection },
-                },
-            );
-        }
-        side
-    }
-
-    /// The weight as the walks compute it, join by join.
-    fn weight(&self, s: usize, techniques: &Techniques, heuristic: Heuristic) -> f64 {
-        let k = self.k();
-        if self.log_effort(s, techniques).is_none() {
-            return 0.0;
-        }
-        let join = self.technique(s).join();
-        let own = heuristic.of(techniques.effort(join));
-        let light = |s: usize| self.light_side(s, techniques, heuristic).sum(heuristic, self.made_by_camera(s - 1), self.to_light[s - 1]);
-        let camera = |s: usize| self.camera_side(k + 1 - s, techniques, heuristic).sum(heuristic, self.made_by_light(s), self.to_lens[s]);
-        match join {
-            Join::LightHit => {
-                let side = self.camera_side(k + 1, techniques, heuristic);
-                let smooth = k == 1 || !self.delta[1];
-                let instead = match (smooth, k) {
-                    (false, _) => 0.0,
-                    (true, 1) => heuristic.of(techniques.lens_splat * self.light_end),
-                    (true, _) => heuristic.of(techniques.next_event * self.next_event_end),
-                };
-                let closed = heuristic.of(self.light_end) * side.closed(heuristic, self.to_lens[0]);
-                share(own, side.per_forward() * (instead + closed))
-            }
-            Join::NextEvent => {
-                let hit = if self.delta[0] { 0.0 } else { heuristic.of(techniques.light_hit * self.made_by_camera(0)) };
-                share(heuristic.of(techniques.next_event * self.next_event_end), hit + heuristic.of(self.light_end) * camera(1))
-            }
-            Join::LensHit => share(own, light(k + 1)),
-            Join::LensSplat => {
-                let hit = if self.delta[k] { 0.0 } else { heuristic.of(techniques.lens_hit * self.made_by_light(k) / self.lens_end) };
-                share(own, light(k) + hit)
-            }
-            Join::Connection => share(own, light(s) + camera(s)),
-        }
-    }
-}
-
-fn sets(numbers: &mut Numbers) -> Vec<Techniques> {
-    let mut sets = std::vec![Techniques::PATH, Techniques::LIGHT, Techniques::BIDIRECTIONAL];
-    for _ in 0..5 {
-        let mut count = || [0.0, 0.25, 1.0, 4.0][(numbers.unit() * 4.0) as usize];
-        sets.push(Techniques { light_hit: count(), next_event: count(), connection: count(), lens_splat: count(), lens_hit: count() });
-    }
-    sets
-}
+use crate as kernel;
+use oracle::{Numbers, Path, distances, sets};
 
 fn worst_error(longest: usize, decades: f64, deltas: f64, seed: u64) -> f64 {
     let mut numbers = Numbers(seed);
-    let mut worst: f64 = 0.0;
-    for turn in 0..400 {
+    (0..400).fold(0.0, |worst: f64, turn| {
         let path = Path::random(1 + turn % longest, decades, deltas, &mut numbers);
-        for techniques in sets(&mut numbers) {
-            for heuristic in [Heuristic::Balance, Heuristic::Power] {
-                let mut sum = 0.0;
-                let mut any = false;
-                for s in 0..=path.k() + 1 {
-                    let (fast, slow) = (path.weight(s, &techniques, heuristic), path.definition(s, &techniques, heuristic));
-                    any |= path.log_effort(s, &techniques).is_some();
-                    worst = worst.max((fast - slow).abs());
-                    sum += fast;
-                }
-                if any {
-                    worst = worst.max((sum - 1.0).abs());
-                }
-            }
-        }
-    }
-    worst
+        let (apart, from_one) = distances::<Side>(&path, &sets(&mut numbers));
+        assert!(!apart.is_nan() && !from_one.is_nan());
+        worst.max(apart).max(from_one)
+    })
 }
 
 #[test]
@@ -227,7 +29,9 @@ fn weights_match_the_definition_on_paths_with_diracs() {
 
 #[test]
 fn weights_match_the_definition_on_64_vertices_of_wild_densities() {
-    // Each density spans 24 decades; products of 63 of them leave f64 by far, ratios of neighbours do not.
-    let worst = worst_error(63, 12.0, 0.2, 3);
-    assert!(worst < 1e-5, "{worst}");
+    // Each area density spans 60 decades, its square 120; along 64 vertices even f64 ends at both ends.
+    for seed in 3..8 {
+        let worst = worst_error(63, 15.0, 0.2, seed);
+        assert!(worst < 1e-9, "{worst}");
+    }
 }

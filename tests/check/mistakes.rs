@@ -9,7 +9,7 @@ use super::report;
 pub(super) const NEVER_OBSERVED: i32 = 24;
 
 /// The mistakes of `tests/wrong` by their numbers, and the test that must be the first to fail.
-pub(super) const MISTAKES: [(i32, &str, Test); 41] = [
+pub(super) const MISTAKES: [(i32, &str, Test); 42] = [
     (1, "pdf 3 % too large, and the weight follows it", Test::Mass),
     (2, "pdf 3 % too small", Test::Mass),
     (3, "weight 3 % too large", Test::Weight),
@@ -51,6 +51,7 @@ pub(super) const MISTAKES: [(i32, &str, Test); 41] = [
     (39, "a tenth of the samples is thrown away", Test::Mass),
     (40, "samples near the horizon are thrown away", Test::Mass),
     (42, "bright where samples never go", Test::Furnace),
+    (43, "a delta lobe denies its way back", Test::Paths),
 ];
 
 /// A check of each, in two halves so that they run side by side.

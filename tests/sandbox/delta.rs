@@ -7,7 +7,7 @@ use bidir_kernel::{Heuristic, Technique};
 
 use super::{library, read};
 use crate::{
-    agreement::{NOT_LIGHT, agree},
+    estimators::{NOT_LIGHT, agree},
     pictures::{BDPT, Subject},
     scenes::*,
     statistics::threshold,

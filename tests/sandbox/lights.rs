@@ -6,7 +6,7 @@ use bidir::plugin::Library;
 
 use super::{library, read};
 use crate::{
-    agreement::{ALL, agree_after},
+    estimators::{ALL, agree_after},
     scenes::*,
 };
 

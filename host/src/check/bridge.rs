@@ -100,6 +100,13 @@ const MANY_TIMES: f64 = 1e6;
 /// What rounding may do to a mass or a mean, relative to it.
 const ROUNDING: f64 = 1e-3;
 
+/// A weight that samples may bring at most, so that those seldom drawn are not missed by chance: where values are more than this many
+/// times the density, samples as good as never go.
+const SELDOM: f64 = 100.0;
+
+/// A weight that few samples of a shader have.
+const HEAVY: f64 = 4.0;
+
 /// What tables and fits inside a shader may add to its energy.
 const ENERGY_SLACK: f64 = 2e-3;
 
@@ -131,6 +138,14 @@ pub(super) fn compare(subject: &impl Scatterer, samples: usize, dice: &mut Dice)
         cells[cell].1 += bridged;
         sums.known.add(bridged);
         sums.direct.add(claim.pdf / q);
+        for (band, value) in claim.value.into_iter().enumerate() {
+            let weight = value / claim.pdf;
+            let class = if weight <= HEAVY { 0 } else { 1 };
+            if weight <= SELDOM {
+                sums.heaviest[class][band] = sums.heaviest[class][band].max(weight);
+            }
+            sums.heavy[band] += if class == 1 { value / (claim.pdf + q) } else { 0.0 };
+        }
         add(&mut sums.claimed, claim.value.map(|value| value / (claim.pdf + q)));
     }
     sums.found(samples, shape(&partition, &cells, &sums), nothing(subject))
@@ -165,6 +180,10 @@ struct Sums {
     left: [Moments; 3],
     claimed: [Moments; 3],
     energy: [Moments; 3],
+    /// What a sample can bring, as far as claims tell, whether one did or not: up to [`HEAVY`], and more.
+    heaviest: [[f64; 3]; 2],
+    /// What the heavy ones bring together.
+    heavy: [f64; 3],
 }
 
 /// A deviation of two means of independent values.
@@ -208,7 +227,10 @@ impl Sums {
         let (brought, left, known) = (&self.brought[band], &self.left[band], &self.claimed[band]);
         let off = left.mean() - known.mean();
         let slack = 2.0 * ROUNDING * brought.mean() + nothing;
-        (brought.mean(), brought.mean() - off, deviation(off, &[(left, 2.0 * left.largest), (known, known.largest)], slack))
+        // A faint tail of heavy weights is no excuse for the rest.
+        let matters = self.heavy[band] / known.count.max(1.0) > slack;
+        let heaviest = self.heaviest[usize::from(matters)][band];
+        (brought.mean(), brought.mean() - off, deviation(off, &[(left, (2.0 * left.largest).max(heaviest)), (known, known.largest)], slack))
     }
 }
 

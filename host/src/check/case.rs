@@ -5,7 +5,7 @@ use std::{fmt, str::FromStr};
 use bidir_kernel::{Carried, Vec3};
 use serde::{Serialize, Serializer};
 
-use super::test::Test;
+use super::{parameters, test::Test};
 
 /// Where a finding was made: all that decides the answer to `--replay CASE`. It is written with slashes between its parts, the parameters
 /// last: `weight/stream=17/effort=14/wo=0.6,0,0.8/carried=radiance/with/alpha=0.1`.
@@ -21,6 +21,13 @@ pub struct Case {
     pub view: Option<(Vec3, Carried)>,
     /// The parameters, as their set is called.
     pub parameters: String,
+}
+
+impl Case {
+    /// The parameters of a plugin's case, as `--set` takes them.
+    pub fn given(&self) -> Vec<(String, String)> {
+        parameters::parts(&self.parameters)
+    }
 }
 
 /// What begins the parameters.

@@ -83,9 +83,20 @@ fn block(manifest: &Manifest, given: &[(&str, Value)], chosen: &Chosen<'_>) -> B
             parts.push((parameter.name.as_str(), written(value)));
         }
     }
-    let join =
-        |sign: &str, between: &str| parts.iter().map(|(name, value)| format!("{name}{sign}{value}")).collect::<Vec<_>>().join(between);
-    Block { set: Set { name: join("=", "/"), words: join(" = ", ", ") }, bytes }
+    let name = parts.iter().map(|(name, value)| format!("{name}={}", escaped(value))).collect::<Vec<_>>().join("/");
+    let words = parts.iter().map(|(name, value)| format!("{name} = {value}")).collect::<Vec<_>>().join(", ");
+    Block { set: Set { name, words }, bytes }
+}
+
+/// Slashes part the parameters of a set's name.
+fn escaped(value: &str) -> String {
+    value.replace('%', "%25").replace('/', "%2F")
+}
+
+/// The names and values that a set's name is made of.
+pub(super) fn parts(name: &str) -> Vec<(String, String)> {
+    let parts = name.split('/').filter(|part| !part.is_empty()).map(|part| part.split_once('=').unwrap_or((part, "")));
+    parts.map(|(name, value)| (name.to_owned(), value.replace("%2F", "/").replace("%25", "%"))).collect()
 }
 
 /// As [`read`] reads it.
@@ -202,7 +213,7 @@ mod tests {
                {"name": "tint", "type": "rgb", "offset": 4, "default": 0.5, "min": 0, "max": 1},
                {"name": "count", "type": "int", "offset": 16, "default": 2, "min": 1, "max": 5},
                {"name": "thin", "type": "bool", "offset": 20, "default": false},
-               {"name": "slopes", "type": "enum", "offset": 24, "default": "b", "values": ["a", "b", "c"]},
+               {"name": "slopes", "type": "enum", "offset": 24, "default": "b", "values": ["a", "b", "c", "1/2 of 10 %"]},
                {"name": "free", "type": "float", "offset": 28, "default": -1}"#,
         )
     }
@@ -213,7 +224,9 @@ mod tests {
         let blocks = all_over(&manifest, &[], 1);
         assert_eq!((blocks[0].set.name.as_str(), &blocks[0].bytes), ("", &manifest.defaults()));
         assert!(blocks.len() > 20 && blocks.len() <= MOST);
-        for end in ["alpha=0", "alpha=1.1", "tint=0", "tint=1", "count=1", "count=5", "thin=true", "slopes=a", "slopes=c", "free=10"] {
+        for end in
+            ["alpha=0", "alpha=1.1", "tint=0", "tint=1", "count=1", "count=5", "thin=true", "slopes=a", "slopes=1%2F2 of 10 %25", "free=10"]
+        {
             assert!(blocks.iter().any(|block| block.set.name == end), "{end}");
         }
     }
@@ -229,14 +242,9 @@ mod tests {
     fn names_lead_back_to_their_blocks() {
         let manifest = many();
         for block in all_over(&manifest, &[], 2) {
-            let parts: Vec<_> = block.set.name.split('/').filter(|part| !part.is_empty()).collect();
-            let given: Vec<_> = parts
-                .iter()
-                .map(|part| {
-                    let (name, text) = part.split_once('=').expect("a value");
-                    (name, read(manifest.parameter(name).expect("a parameter"), text).expect("of its type"))
-                })
-                .collect();
+            let parts = parts(&block.set.name);
+            let value = |name, text| read(manifest.parameter(name).expect("a parameter"), text).expect("of its type");
+            let given: Vec<_> = parts.iter().map(|(name, text)| (name.as_str(), value(name, text))).collect();
             assert_eq!(one(&manifest, &given).bytes, block.bytes, "{}", block.set.name);
         }
     }

@@ -60,11 +60,11 @@ impl Tally {
         let largest = found.abs().max(wanted.abs());
         let off = if largest < NOTHING { 0.0 } else { (found - wanted) / largest };
         let spread = if off.abs() > ROUNDING { spread() } else { 0.0 };
-        if spread < HOPELESS {
+        if spread < HOPELESS && !off.is_nan() {
             self.drift.add(off.clamp(-0.5, 0.5));
         }
         let tolerance = ROUNDING + CONDITION * spread;
-        let beyond = off.abs() > tolerance;
+        let beyond = off.is_nan() || off.abs() > tolerance;
         self.strays += u64::from(beyond);
         let worst = &mut self.worst[usize::from(!beyond)];
         if worst.as_ref().is_none_or(|worst| off.abs() / tolerance > worst.off.abs() / worst.tolerance) {

@@ -30,6 +30,8 @@ pub enum Test {
     Weight,
     /// A reverse density is the density of the way back.
     Reverse,
+    /// The weights of all ways to make a path sum to 1.
+    Paths,
     /// f is the same both ways.
     Reciprocity,
     /// Nothing depends on the azimuth, where that is declared.
@@ -46,7 +48,7 @@ pub enum Test {
 
 impl Test {
     /// Those of a BSDF.
-    pub const OF_BSDFS: [Self; 16] = [
+    pub const OF_BSDFS: [Self; 17] = [
         Self::Calls,
         Self::Range,
         Self::Purity,
@@ -59,6 +61,7 @@ impl Test {
         Self::Chance,
         Self::Weight,
         Self::Reverse,
+        Self::Paths,
         Self::Reciprocity,
         Self::Isotropy,
         Self::Albedo,
@@ -84,6 +87,7 @@ impl Test {
             Self::Carried => "carried",
             Self::Weight => "weight",
             Self::Reverse => "reverse",
+            Self::Paths => "paths",
             Self::Reciprocity => "reciprocity",
             Self::Isotropy => "isotropy",
             Self::Albedo => "albedo",
@@ -113,6 +117,7 @@ impl Test {
             Self::Carried => "what is carried decides the η² of refraction and nothing else",
             Self::Weight => "weight · pdf = value",
             Self::Reverse => "pdf_rev is the pdf of the way back",
+            Self::Paths => "the weights of all ways to make a path sum to 1",
             Self::Reciprocity => "f is the same both ways",
             Self::Isotropy => "the azimuth does not matter",
             Self::Albedo => "no more leaves than arrives",

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand};
 
 use super::plugin::templates;
-use crate::{plan::Named, rays::Triangles, render::Numbers};
+use crate::{plan::Named, render::Numbers};
 
 /// A bidirectional path tracer for Mitsuba 3 scenes.
 #[derive(Debug, Parser)]
@@ -82,9 +82,6 @@ pub struct Render {
     /// Which random numbers
     #[arg(long, value_enum, default_value_t)]
     pub sampler: Numbers,
-    /// How rays meet triangles
-    #[arg(long, value_enum, default_value_t)]
-    pub triangles: Triangles,
     /// Render threads; as many as the machine has, unless told
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096))]
     pub threads: Option<u32>,

@@ -93,8 +93,8 @@ fn threads(arguments: &Check) -> usize {
 
 fn replay(module: &Arc<Module>, text: &str, arguments: &Check) -> Result<Report> {
     let mut case: Case = text.parse().map_err(|why| Error::new(format!("the case {why}"), "copy one from what a check printed"))?;
-    let parts = case.parameters.split('/').filter(|part| !part.is_empty());
-    let given: Vec<_> = parts.map(|part| part.split_once('=').unwrap_or((part, ""))).collect();
+    let given = case.given();
+    let given = given.iter().map(|(name, value)| (name.as_str(), value.as_str()));
     let plugin = Plugin::with(module, &check::values(module.manifest(), given)?)?;
     // A case may have been edited: its one set is meant, however that is called.
     if let Some(set) = Surfaces::sets(&plugin).first() {

@@ -107,7 +107,7 @@ pub(super) fn run(arguments: &Render) -> Result<Outcome> {
     let building = Instant::now();
     stages.building(&description);
     let film = Film::new(&description.film)?;
-    let scene = Scene::new(&description)?.with_triangles(arguments.triangles);
+    let scene = Scene::new(&description)?;
     seconds.build = building.elapsed().as_secs_f64();
     stages.built();
     if scene.degenerate() > 0 {

@@ -8,7 +8,7 @@ use crate::{
     error::{Error, Result},
     partial::Partial,
     plan::Plan,
-    rays::{BuildStats, Triangles},
+    rays::BuildStats,
     render::Numbers,
     scene::{Scene, view::RayCounts},
 };
@@ -89,8 +89,6 @@ pub struct Geometry {
     pub instances: usize,
     /// Shapes and triangles without area, dropped.
     pub degenerate: usize,
-    /// How rays meet triangles.
-    pub triangle_test: Triangles,
     /// Memory of the trees, and of what tells whose a primitive is; without the meshes' own vertices and indices.
     pub bytes: usize,
     /// The same for each triangle; what other shapes and instances take is not told apart.
@@ -106,7 +104,6 @@ impl Geometry {
             triangles,
             instances,
             degenerate: scene.degenerate(),
-            triangle_test: scene.geometry().triangles(),
             bytes,
             bytes_per_triangle: (triangles > 0).then(|| bytes as f64 / triangles as f64),
         }

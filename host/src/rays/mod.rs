@@ -14,6 +14,7 @@ mod build;
 mod bvh;
 mod collapse;
 mod cylinder;
+mod descent;
 mod disk;
 mod instance;
 mod lanes;

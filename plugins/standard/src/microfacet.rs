@@ -141,7 +141,8 @@ const STEEPEST: Real = 6.0;
 /// Inverts ∫ (cos − x sin)⁺ exp(−x²) dx = cos √π/2 erfc(−x) + sin exp(−x²)/2 by Newton steps kept inside a bracket.
 fn visible_slope(cos: Real, sin: Real, u: Real) -> Real {
     let cdf = |x: Real, gauss: Real| cos * (0.5 * SQRT_PI) * erfc(-x) + 0.5 * sin * gauss;
-    let (mut low, mut high) = (-STEEPEST, if cos < STEEPEST * sin { cos / sin } else { STEEPEST });
+    let (least, most) = (-STEEPEST, if cos < STEEPEST * sin { cos / sin } else { STEEPEST });
+    let (mut low, mut high) = (least, most);
     let target = u * cdf(high, exp(-sqr(high)));
     // Exact at grazing and at normal incidence.
     let mut x = min(max(cos * gaussian(u) - sin * sqrt(-ln(max(u, SMALLEST))), low), high);
@@ -154,12 +155,11 @@ fn visible_slope(cos: Real, sin: Real, u: Real) -> Real {
             low = x;
         }
         let step = x - error / ((cos - x * sin) * gauss);
-        let next = if step > low && step < high { step } else { 0.5 * (low + high) };
-        let moved = (next - x).abs();
-        x = next;
-        if moved < 1e-6 {
-            break;
+        // Rounding leaves an error this small no sign, and a bracket made of it may have lost the root: no bisecting then.
+        if (step - x).abs() < 1e-6 {
+            return min(max(step, least), most);
         }
+        x = if step > low && step < high { step } else { 0.5 * (low + high) };
     }
     x
 }

@@ -2,7 +2,7 @@
 
 use bidir_sdk::{
     Bsdf, Carried, Lobe, Made, PerSolidAngle, Real, Scatter, Scattered, Spectrum, Vec3,
-    math::{dot, min, normalize, sqr, vec3},
+    math::{dot, min, normalize, sqr, sqrt, vec3},
 };
 
 use crate::{
@@ -60,7 +60,9 @@ impl RoughDielectric {
         let between = if reflected { wo + wi } else { wo + wi * index.eta };
         let m = normalize(between)?;
         let m = if m.z < 0.0 { -m } else { m };
-        let (out, back) = (dot(wo, m), dot(wi, m));
+        // The cosine of half the angle between unit vectors, whose dot products with m would cancel near grazing.
+        let half = 0.5 * sqrt(dot(between, between));
+        let (out, back) = if reflected { (half, half) } else { (dot(wo, m), dot(wi, m)) };
         // A microfacet is seen from its own front by ω_o, and from the side it sends light to by ω_i.
         if !(out > 0.0) || (back > 0.0) != reflected || back == 0.0 {
             return None;

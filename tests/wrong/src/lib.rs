@@ -162,6 +162,7 @@ impl Wrong {
         let (chance, chance_rev) = match self.mistake {
             29 if chance < 0.9 => (1.05 * chance, 1.05 * chance_rev),
             30 if chance < 1.0 => (chance, 1.0 - chance_rev),
+            43 => (chance, 0.0),
             _ => (chance, chance_rev),
         };
         sample.made = Made::Delta { chance: Chance(chance), chance_rev: Chance(chance_rev) };

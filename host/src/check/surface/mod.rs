@@ -4,6 +4,7 @@ mod batches;
 mod delta;
 mod edges;
 mod pairs;
+mod paths;
 mod purity;
 mod statistics;
 mod view;
@@ -70,6 +71,7 @@ pub(super) fn run(surfaces: &dyn Surfaces, piece: &Piece, effort: u32) -> Ledger
         None => {
             edges::ask(&*surface.bsdf(piece.set), &mut ledger);
             purity::judge(surfaces, piece.set, &mut ledger, &mut dice);
+            paths::judge(&*surface.bsdf(piece.set), set, (1 << effort) / 32, &mut ledger, &mut dice);
         }
     }
     answered(&*surface, &set.words, &mut ledger);

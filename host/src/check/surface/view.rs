@@ -51,26 +51,31 @@ impl View<'_> {
 
     /// How far rounding of the directions may move anything of `eval`'s answer, relatively.
     pub(super) fn spread(&self, wo: Vec3, wi: Vec3, dice: &Dice) -> f64 {
-        let mut dice = dice.clone();
-        let numbers = |wo, wi| {
-            let Scatter { value, pdf, pdf_rev } = self.bsdf.eval(wo, wi, self.carried);
-            [value[0], value[1], value[2], pdf.0, pdf_rev.0].map(f64::from)
-        };
-        let here = numbers(wo, wi);
-        let mut spread: f64 = 0.0;
-        for turn in 0..9 {
-            let there = match turn % 3 {
-                0 => numbers(dice.nudged(wo), wi),
-                1 => numbers(wo, dice.nudged(wi)),
-                _ => numbers(dice.nudged(wo), dice.nudged(wi)),
-            };
-            for (a, b) in here.into_iter().zip(there) {
-                let largest = a.abs().max(b.abs());
-                spread = spread.max(if largest > 0.0 { (a - b).abs() / largest } else { 0.0 });
-            }
-        }
-        spread
+        spread(self.bsdf, wo, wi, self.carried, dice)
     }
+}
+
+/// How far rounding of the directions may move anything of `eval`'s answer, relatively.
+pub(super) fn spread(bsdf: &dyn Bsdf, wo: Vec3, wi: Vec3, carried: Carried, dice: &Dice) -> f64 {
+    let mut dice = dice.clone();
+    let numbers = |wo, wi| {
+        let Scatter { value, pdf, pdf_rev } = bsdf.eval(wo, wi, carried);
+        [value[0], value[1], value[2], pdf.0, pdf_rev.0].map(f64::from)
+    };
+    let here = numbers(wo, wi);
+    let mut spread: f64 = 0.0;
+    for turn in 0..9 {
+        let there = match turn % 3 {
+            0 => numbers(dice.nudged(wo), wi),
+            1 => numbers(wo, dice.nudged(wi)),
+            _ => numbers(dice.nudged(wo), dice.nudged(wi)),
+        };
+        for (a, b) in here.into_iter().zip(there) {
+            let largest = a.abs().max(b.abs());
+            spread = spread.max(if largest > 0.0 { (a - b).abs() / largest } else { 0.0 });
+        }
+    }
+    spread
 }
 
 /// A weight without what refraction does to radiance.

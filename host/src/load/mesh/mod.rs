@@ -84,7 +84,7 @@ pub(super) fn mesh(context: &mut Context, of: &Properties) -> Result<Arc<Mesh>> 
     }
     if dropped > 0 {
         let file = path.file_name().unwrap_or_default().to_string_lossy();
-        context.warn(of.place(), format_args!("dropped {dropped} triangles without area from {file}"));
+        context.warn(of.place(), format_args!("dropped {dropped} triangles from {file}: without area, or with a corner that is no point"));
     }
     let mesh = Arc::new(finish(mesh, facets));
     context.meshes.insert(key, mesh.clone());
@@ -103,20 +103,11 @@ fn bytes(path: &Path) -> Result<Vec<u8>> {
     std::fs::read(path).map_err(|e| fail(format!("cannot be read ({e})")))
 }
 
-/// Refuses what is not finite or names vertices that are not there; drops triangles without area and says how many.
+/// Refuses vertices that are not there, and normals and coordinates that are not finite where a triangle has them; drops triangles without
+/// area, and those with a corner that is no point, and says how many.
 fn check(mesh: &mut Mesh, path: &Path) -> Result<usize> {
     let remedy = "mend the mesh, or export it again";
     let not_finite = |what: &str, at: usize| Error::in_file(path, format!("{what} of vertex {at} (counted from 0) is not finite"), remedy);
-    // The bound keeps squares of differences within f64 and differences within f32.
-    if let Some(at) = mesh.positions.iter().position(|p| p.iter().any(|v| v.is_nan() || v.abs() > 1e30)) {
-        return Err(not_finite("the position", at));
-    }
-    if let Some(at) = mesh.normals.iter().position(|n| n.iter().any(|v| !v.is_finite())) {
-        return Err(not_finite("the normal", at));
-    }
-    if let Some(at) = mesh.uvs.iter().position(|uv| uv.iter().any(|v| !v.is_finite())) {
-        return Err(not_finite("the texture coordinate", at));
-    }
     let count = mesh.positions.len();
     if let Some(at) = mesh.triangles.iter().position(|t| t.iter().any(|&v| v as usize >= count)) {
         let thing = format!("triangle {at} (counted from 0) names vertices {:?}, but there are only {count}", mesh.triangles[at]);
@@ -124,11 +115,26 @@ fn check(mesh: &mut Mesh, path: &Path) -> Result<usize> {
     }
     let before = mesh.triangles.len();
     let positions = &mesh.positions;
-    mesh.triangles.retain(|&corners| normals::doubled_area(positions, corners) > 0.0);
-    if mesh.triangles.is_empty() {
-        let thing = if before == 0 { "has no triangles".into() } else { format!("has {before} triangles, none with an area") };
+    // The bound keeps squares of differences within f64 and differences within f32.
+    let is_point = |v: u32| positions[v as usize].iter().all(|x| x.abs() <= 1e30);
+    mesh.triangles.retain(|&corners| corners.into_iter().all(is_point) && normals::doubled_area(positions, corners) > 0.0);
+    let Some(&[first, ..]) = mesh.triangles.first() else {
+        let no_point = mesh.positions.iter().position(|position| !position.iter().all(|x| x.abs() <= 1e30));
+        let but = no_point.map_or(String::new(), |at| format!("; vertex {at} (counted from 0) is no point"));
+        let thing = if before == 0 { "has no triangles".into() } else { format!("has {before} triangles, and none with an area{but}") };
         return Err(Error::in_file(path, thing, "leave the shape out, or export it again"));
+    };
+    let mut used = vec![false; count];
+    mesh.triangles.iter().flatten().for_each(|&v| used[v as usize] = true);
+    if let Some(at) = (0..mesh.normals.len()).find(|&v| used[v] && mesh.normals[v].iter().any(|x| !x.is_finite())) {
+        return Err(not_finite("the normal", at));
     }
+    if let Some(at) = (0..mesh.uvs.len()).find(|&v| used[v] && mesh.uvs[v].iter().any(|x| !x.is_finite())) {
+        return Err(not_finite("the texture coordinate", at));
+    }
+    // What no triangle names has no say in where the mesh lies.
+    let somewhere = mesh.positions[first as usize];
+    mesh.positions.iter_mut().zip(&used).filter(|(_, used)| !**used).for_each(|(position, _)| *position = somewhere);
     Ok(before - mesh.triangles.len())
 }
 
@@ -159,11 +165,24 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_finite_is_one_error_that_names_the_vertex() {
+    fn triangles_with_a_corner_that_is_no_point_are_dropped_and_counted() {
         for z in [f32::NAN, f32::INFINITY, 1e31] {
-            let error = check(&mut triangle(z), Path::new("m.ply")).unwrap_err().to_string();
-            assert!(error.starts_with("m.ply: the position of vertex 2"), "{error}");
+            let mut mesh = triangle(z);
+            mesh.positions.push([0.0, 1.0, 0.0]);
+            mesh.triangles.push([0, 1, 4]);
+            mesh.normals = vec![[0.0, 0.0, 1.0], [0.0, 0.0, 1.0], [z; 3], [f32::NAN; 3], [0.0, 0.0, 1.0]];
+            assert_eq!(check(&mut mesh, Path::new("m.ply")), Ok(3));
+            assert_eq!(mesh.triangles, [[0, 1, 4]]);
+            assert_eq!(mesh.positions[2..4], [[0.0; 3]; 2], "what nothing names lies where something does");
         }
+    }
+
+    #[test]
+    fn a_normal_that_is_not_finite_is_one_error_that_names_the_vertex() {
+        let mut mesh = triangle(0.0);
+        mesh.normals = vec![[0.0, 0.0, 1.0], [0.0, f32::NAN, 1.0], [0.0, 0.0, 1.0], [0.0, 0.0, 1.0]];
+        let error = check(&mut mesh, Path::new("m.ply")).unwrap_err().to_string();
+        assert!(error.starts_with("m.ply: the normal of vertex 1"), "{error}");
     }
 
     #[test]
