@@ -30,7 +30,7 @@ pub enum Format {
 pub struct Parsed {
     /// As the file has it: finite, every index in range, every triangle with an area.
     pub mesh: Mesh,
-    /// How many triangles without area were left out.
+    /// How many triangles were left out: without area, or with a corner that is no point.
     pub dropped: usize,
 }
 
@@ -133,9 +133,17 @@ fn check(mesh: &mut Mesh, path: &Path) -> Result<usize> {
         return Err(not_finite("the texture coordinate", at));
     }
     // What no triangle names has no say in where the mesh lies.
-    let somewhere = mesh.positions[first as usize];
-    mesh.positions.iter_mut().zip(&used).filter(|(_, used)| !**used).for_each(|(position, _)| *position = somewhere);
+    let first = first as usize;
+    fill_unused(&mut mesh.positions, &used, first);
+    fill_unused(&mut mesh.normals, &used, first);
+    fill_unused(&mut mesh.uvs, &used, first);
     Ok(before - mesh.triangles.len())
+}
+
+/// Gives what no triangle names the value of a vertex that one does.
+fn fill_unused<T: Copy>(values: &mut [T], used: &[bool], named: usize) {
+    let Some(&value) = values.get(named) else { return };
+    values.iter_mut().zip(used).filter(|(_, used)| !**used).for_each(|(unused, _)| *unused = value);
 }
 
 /// As Mitsuba has it: a mesh without normals gets smooth ones, and `face_normals` takes them away.
