@@ -12,7 +12,7 @@
 //! stores four numbers and a joint costs O(1). All of it is f64: ratios of densities span hundreds of decades, and
 //! an f32 sum that underflowed once would stay wrong for the rest of the walk. Along 64 vertices their squares leave even f64, and
 //! may come back; what is summed along the walk has an exponent of its own.
-//! The definition, every density multiplied out, is kept in `weight_oracle.rs`.
+//! The definition, every density multiplied out, is kept in `weight_tests/oracle.rs`.
 
 use crate::{math::times, technique::Heuristic, wide::Wide};
 

@@ -1,4 +1,4 @@
-#[path = "weight_oracle.rs"]
+#[path = "weight_tests/oracle.rs"]
 mod oracle;
 
 use super::*;

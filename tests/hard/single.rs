@@ -48,7 +48,7 @@ impl SingleSide {
 }
 
 /// The definition of the weights, from the kernel's own tests.
-#[path = "../../kernel/src/weight_oracle.rs"]
+#[path = "../../kernel/src/weight_tests/oracle.rs"]
 pub mod oracle;
 
 use bidir_kernel as kernel;
