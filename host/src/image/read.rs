@@ -118,6 +118,12 @@ fn exr(bytes: &[u8], limits: &Limits) -> std::result::Result<Pixels, String> {
         if header.deep {
             return Err("deep images are not supported".into());
         }
+        // What a file says of one block is taken from memory before it is read, and may be more than the whole image.
+        let block = header.max_block_pixel_size();
+        let bytes = [block.y(), header.channels.bytes_per_pixel].into_iter().fold(block.x() as u64, |all, n| all.saturating_mul(n as u64));
+        if bytes > limits.bytes {
+            return Err(format!("its tiles or groups of lines take {bytes} bytes each, more than {}", limits.bytes));
+        }
     }
     if total > limits.bytes {
         return Err(format!("its layers take more than {} bytes", limits.bytes));
