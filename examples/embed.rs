@@ -58,6 +58,8 @@ impl Scene for World {
 const SIZE: usize = 128;
 struct Picture(Vec<Spectrum>, usize);
 impl Film for Picture {
+    type Rivals = Together;
+
     fn add(&mut self, c: Contribution) {
         self.0[self.1] += c.value * c.weight;
     }

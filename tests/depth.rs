@@ -74,7 +74,7 @@ fn with_storage(subject: &Subject, strategy: &Strategy, stored: usize, samples: 
         }
         film.commit(buffer);
     }
-    mean_of(&film.develop(1.0))
+    mean_of(&film.develop())
 }
 
 /// Paths longer than what was stored are left to s = 0 and s = 1, whose weights know it.
@@ -119,5 +119,5 @@ fn an_interrupted_render_is_whole() {
         None
     });
     assert!(status.interrupted && status.samples < 1000 && film.samples() == u64::from(status.samples) * 4);
-    assert_eq!(film.develop(1.0), subject.image(&subject.job(job.strategy, status.samples, 1)));
+    assert_eq!(film.develop(), subject.image(&subject.job(job.strategy, status.samples, 1)));
 }

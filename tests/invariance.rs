@@ -10,7 +10,7 @@ use bidir_kernel::{Heuristic, Strategy, Techniques};
 use std::sync::atomic::AtomicBool;
 
 use crate::{
-    pictures::{BDPT, LIGHT, PATH, Subject, light_walks, mean_of},
+    pictures::{BDPT, LIGHT, PATH, Subject, mean_of},
     scenes::*,
     statistics::threshold,
 };
@@ -37,7 +37,7 @@ fn in_goes(subject: &Subject, strategy: Strategy, ends: &[u32], threads: usize) 
         let job = Job { threads, target: Target::Samples(end), ..subject.job(strategy, end, 7) };
         render::render(&subject.scene, &film, &job, &AtomicBool::new(false), |_| None);
     }
-    film.develop(light_walks(&strategy.techniques))
+    film.develop()
 }
 
 #[test]
@@ -97,7 +97,7 @@ fn any_division_into_passes_makes_the_same_bits() {
                 film.commit(buffer);
             }
         }
-        film.develop(1.0)
+        film.develop()
     };
     let once = by_hand(&film, &[7]);
     for ends in [vec![1, 2, 3, 4, 5, 6, 7], vec![3, 7]] {
@@ -106,7 +106,7 @@ fn any_division_into_passes_makes_the_same_bits() {
     let own = Film::new(&subject.description.film).expect("a film");
     let job = Job { threads: 2, numbers: Numbers::Independent, ..subject.job(strategy, 7, 7) };
     render::render(&subject.scene, &own, &job, &AtomicBool::new(false), |_| None);
-    assert!(own.develop(1.0) == once, "the renderer's own passes");
+    assert!(own.develop() == once, "the renderer's own passes");
 }
 
 #[test]

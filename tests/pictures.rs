@@ -40,7 +40,6 @@ pub struct Pictures {
 /// What the techniques brought, many times.
 pub struct Pyramids {
     batches: Vec<Pyramid>,
-    light_walks: f64,
 }
 
 impl Subject {
@@ -70,7 +69,7 @@ impl Subject {
         let status = render::render(&self.scene, &film, job, &AtomicBool::new(false), |_| None);
         assert_eq!(status.fault, None);
         assert!(!status.interrupted && film.refused() == 0, "{} contributions refused", film.refused());
-        film.develop(light_walks(&job.strategy.techniques))
+        film.develop()
     }
 
     /// [`BATCHES`] pictures with `samples` per pixel each; `seed` tells apart what must not share random numbers.
@@ -89,13 +88,8 @@ impl Subject {
             assert_eq!(pyramid.refused(), 0);
             pyramid
         };
-        Pyramids { batches: (0..BATCHES).map(batch).collect(), light_walks: light_walks(&strategy.techniques) }
+        Pyramids { batches: (0..BATCHES).map(batch).collect() }
     }
-}
-
-/// Light walks per sample.
-pub fn light_walks(techniques: &Techniques) -> f64 {
-    if techniques.light_walk() { 1.0 } else { 0.0 }
 }
 
 /// A rectangle of pixels: left, top, width, height.
@@ -133,13 +127,13 @@ impl Pictures {
 impl Pyramids {
     /// The mean over pixels and bands of what a technique brought, weighted (0) or unweighted (1).
     pub fn technique(&self, technique: Technique, layer: usize) -> Estimate {
-        Estimate::of(&self.means(|pyramid| mean_of(&pyramid.develop(technique, self.light_walks)[layer])))
+        Estimate::of(&self.means(|pyramid| mean_of(&pyramid.develop(technique)[layer])))
     }
 
     /// The weighted mean of all paths with `length` segments.
     pub fn length(&self, length: u32) -> Estimate {
         Estimate::of(&self.means(|pyramid| {
-            (0..=length + 1).map(|s| mean_of(&pyramid.develop(Technique { s, t: length + 1 - s }, self.light_walks)[0])).sum()
+            (0..=length + 1).map(|s| mean_of(&pyramid.develop(Technique { s, t: length + 1 - s })[0])).sum()
         }))
     }
 

@@ -79,7 +79,7 @@ fn image((description, scene): &(Description, Scene), techniques: Techniques, sa
     };
     let status = render::render(scene, &film, &job, &AtomicBool::new(false), |_| None);
     assert!(status.fault.is_none() && status.samples == samples, "{:?}", status.fault);
-    (film.develop(if techniques.light_walk() { 1.0 } else { 0.0 }), status.cpu.as_secs_f64())
+    (film.develop(), status.cpu.as_secs_f64())
 }
 
 /// Single calls, through the surface that a ray meets, as in a render.

@@ -6,7 +6,6 @@ use crate::{
     density::{Chance, conversions},
     film::{Contribution, Film},
     light::{Illumination, Light},
-    math::times,
     point::{Place, Point, Ray, Segment},
     real::{Real, Vec2, Vec3},
     roulette::survive,
@@ -17,7 +16,7 @@ use crate::{
     technique::{Join, Technique},
     vertex::{Bounce, Vertex, step},
     walk::WalkVertex,
-    weight::{Side, share},
+    weight::{Rivals, Side, share},
 };
 
 /// How many of a vertex's dimensions one next event takes; those beyond the first lie far away from all others.
@@ -32,8 +31,8 @@ struct CameraWalk<'a, 's, S: Scene, P, F> {
 }
 
 /// The camera walk's newest vertex as a joint needs it.
-struct End<'a> {
-    side: &'a Side,
+struct End<'a, R> {
+    side: &'a Side<R>,
     throughput: Spectrum,
     /// Segments from the lens to here.
     length: u32,
@@ -49,20 +48,20 @@ struct Lit<I> {
 }
 
 /// Traces one camera walk and joins each of its vertices to the lights; returns how many it left in `store`.
-pub(crate) fn camera_walk<'s, S: Scene>(
+pub(crate) fn camera_walk<'s, S: Scene, F: Film>(
     scene: &'s S,
     strategy: &Strategy,
     joined_length: u32,
     sampler: &mut impl Sampler,
     raster: Vec2,
-    store: &mut [Option<WalkVertex<'s, S>>],
-    film: &mut impl Film,
+    store: &mut [Option<WalkVertex<'s, S, F::Rivals>>],
+    film: &mut F,
 ) -> usize {
     CameraWalk { scene, strategy, joined_length, sampler, film }.run(raster, store)
 }
 
 impl<'s, S: Scene, P: Sampler, F: Film> CameraWalk<'_, 's, S, P, F> {
-    fn run(&mut self, raster: Vec2, store: &mut [Option<WalkVertex<'s, S>>]) -> usize {
+    fn run(&mut self, raster: Vec2, store: &mut [Option<WalkVertex<'s, S, F::Rivals>>]) -> usize {
         let Strategy { techniques, heuristic, max_depth, .. } = *self.strategy;
         let scene = self.scene;
         self.sampler.seek(Walk::Camera, start::LENS);
@@ -72,31 +71,32 @@ impl<'s, S: Scene, P: Sampler, F: Film> CameraWalk<'_, 's, S, P, F> {
         let mut ray =
             Ray { origin: previous.position + direction * seen.near, direction, t_max: seen.far - seen.near, segment: Segment::Lens };
         let lens_hit = if seen.end.can_be_hit() { techniques.lens_hit } else { 0.0 };
-        let mut side = Side::start(heuristic, f64::from(seen.end.value()), lens_hit);
+        let mut side = Side::start(heuristic, f64::from(seen.end.value()), Join::LensHit, lens_hit);
         let mut throughput = seen.weight;
-        let (mut pdf, mut pdf_rev, mut delta) = (f64::from(seen.spread.value()), 0.0, false);
+        let mut way = (f64::from(seen.spread.value()), 0.0, false);
         let mut eta_scale: Real = 1.0;
         let mut stored = 0;
         let mut length = 1;
         while length <= max_depth {
-            let effort = if length == 1 { techniques.lens_splat } else { techniques.connection };
+            let join = if length == 1 { Join::LensSplat } else { Join::Connection };
+            let instead = (join, techniques.effort(join));
             let Some((point, hit)) = scene.intersect(&ray) else {
                 if let Some(id) = scene.environment()
                     && !(length == 1 && scene.hides_emitters())
                 {
                     let at = Point::distant(previous.position, -direction);
-                    side = side.advance(heuristic, &step(&previous, &at, direction, pdf, pdf_rev, delta, effort));
+                    side = side.advance(heuristic, &step(&previous, &at, direction, way, instead));
                     // A lens that sees only so far is never shown what is infinitely far.
                     let clipped = length == 1 && seen.far < Real::INFINITY;
                     let joined = length <= self.joined_length && !clipped;
-                    self.light_hit(id, &at, &previous, direction, delta, &End { side: &side, throughput, length, joined });
+                    self.light_hit(id, &at, &previous, direction, way.2, &End { side: &side, throughput, length, joined });
                 }
                 return stored;
             };
-            side = side.advance(heuristic, &step(&previous, &point, direction, pdf, pdf_rev, delta, effort));
+            side = side.advance(heuristic, &step(&previous, &point, direction, way, instead));
             if let Some(id) = scene.light_id_at(hit) {
                 let joined = length <= self.joined_length;
-                self.light_hit(id, &point, &previous, direction, delta, &End { side: &side, throughput, length, joined });
+                self.light_hit(id, &point, &previous, direction, way.2, &End { side: &side, throughput, length, joined });
             }
             if length >= max_depth {
                 return stored;
@@ -124,7 +124,7 @@ impl<'s, S: Scene, P: Sampler, F: Film> CameraWalk<'_, 's, S, P, F> {
                 }
             }
             (previous, direction) = (point, bounce.direction);
-            (pdf, pdf_rev, delta) = (bounce.pdf, bounce.pdf_rev, bounce.delta);
+            way = (bounce.pdf, bounce.pdf_rev, bounce.delta);
             ray = Ray::leaving(&previous, direction, Segment::Inner);
             length += 1;
         }
@@ -132,7 +132,7 @@ impl<'s, S: Scene, P: Sampler, F: Film> CameraWalk<'_, 's, S, P, F> {
     }
 
     /// s = 0: the walk landed on the light `id` at `at`, coming from `previous`.
-    fn light_hit(&mut self, id: S::LightId, at: &Point, previous: &Point, direction: Vec3, delta: bool, end: &End) {
+    fn light_hit(&mut self, id: S::LightId, at: &Point, previous: &Point, direction: Vec3, delta: bool, end: &End<F::Rivals>) {
         let Strategy { techniques, heuristic, .. } = *self.strategy;
         if !techniques.uses(Join::LightHit) {
             return;
@@ -147,27 +147,28 @@ impl<'s, S: Scene, P: Sampler, F: Film> CameraWalk<'_, 's, S, P, F> {
         // Joining the last two vertices instead: the walk's own x_0 shown to the lens, or next event, which knows its receiver.
         // No direction is shown to a camera that is itself one direction.
         let apart = at.place == Place::Distant && previous.place == Place::Distant;
-        let instead = if delta || apart {
+        let join = if end.length == 1 { Join::LensSplat } else { Join::NextEvent };
+        let instead = if delta || apart || !techniques.uses(join) {
             0.0
-        } else if end.length == 1 {
+        } else if join == Join::LensSplat {
             if joined { heuristic.of(techniques.lens_splat * made) } else { 0.0 }
-        } else if techniques.uses(Join::NextEvent) {
+        } else {
             let picked = f64::from(self.scene.light_chance(id, Some(previous)).0);
             heuristic.of(techniques.next_event * picked * f64::from(light.next_event_density(at, previous).value()))
-        } else {
-            0.0
         };
         let end_density = if joined { made } else { 0.0 };
-        let others = end.side.sum_of_hit(heuristic, end_density, f64::from(exit.spread.value()), instead);
+        let others = end.side.sum_of_hit(heuristic, end_density, f64::from(exit.spread.value()), (join, instead));
+        let own = heuristic.of(techniques.light_hit);
+        self.film.weighed(own, others);
         self.film.add(Contribution {
             value: end.throughput * exit.radiance,
-            weight: share(heuristic.of(techniques.light_hit), others) as Real,
+            weight: share(own, others.total()) as Real,
             technique: Technique { s: 0, t: end.length + 1 },
         });
     }
 
     /// s = 1, points of lights chosen for this vertex, and where the walk goes on; the last light and that are asked for at once.
-    fn lit_and_bounced<B: Bsdf>(&mut self, vertex: &Vertex<B>, end: &End) -> Option<Bounce> {
+    fn lit_and_bounced<B: Bsdf>(&mut self, vertex: &Vertex<B>, end: &End<F::Rivals>) -> Option<Bounce> {
         let dimension = end.length.wrapping_mul(DIMENSIONS_PER_VERTEX);
         let count = if vertex.joins() { self.strategy.techniques.next_event as u32 } else { 0 };
         let mut last = None;
@@ -198,7 +199,7 @@ impl<'s, S: Scene, P: Sampler, F: Film> CameraWalk<'_, 's, S, P, F> {
     }
 
     /// s = 1: the vertex lit by one point of a light.
-    fn next_event<B: Bsdf>(&mut self, vertex: &Vertex<B>, end: &End, lit: &Lit<S::LightId>, scatter: &Scatter) {
+    fn next_event<B: Bsdf>(&mut self, vertex: &Vertex<B>, end: &End<F::Rivals>, lit: &Lit<S::LightId>, scatter: &Scatter) {
         let Strategy { techniques, heuristic, .. } = *self.strategy;
         let (Lit { id, chance, sampled }, point) = (lit, &vertex.point);
         let per_sample = techniques.next_event as Real * chance.0;
@@ -208,16 +209,17 @@ impl<'s, S: Scene, P: Sampler, F: Film> CameraWalk<'_, 's, S, P, F> {
         }
         let exit = sampled.exit;
         let own = heuristic.of(techniques.next_event * f64::from(chance.0) * f64::from(sampled.density.value()));
-        let mut others = 0.0;
+        let mut others = F::Rivals::NONE;
         let (to_light, to_vertex) = conversions(point, &sampled.point, sampled.direction);
         if exit.end.can_be_hit() {
-            others += heuristic.of(techniques.light_hit * f64::from(scatter.pdf.0) * to_light);
+            others = others.with(Join::LightHit, heuristic.of(techniques.light_hit * f64::from(scatter.pdf.0) * to_light));
         }
         if end.joined {
             let made = f64::from(self.scene.light_chance(*id, None).0) * f64::from(exit.end.value());
             let across = f64::from(exit.spread.value()) * to_vertex;
-            others += times(heuristic.of(made), end.side.sum(heuristic, across, f64::from(scatter.pdf_rev.0)));
+            others = others.and(end.side.sum(heuristic, across, f64::from(scatter.pdf_rev.0)).times(heuristic.of(made)));
         }
-        self.film.add(Contribution { value, weight: share(own, others) as Real, technique: Technique { s: 1, t: end.length + 1 } });
+        self.film.weighed(own, others);
+        self.film.add(Contribution { value, weight: share(own, others.total()) as Real, technique: Technique { s: 1, t: end.length + 1 } });
     }
 }

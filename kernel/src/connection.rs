@@ -6,6 +6,7 @@ use crate::{
     bsdf::{BATCH, Bsdf, Scatter},
     density::conversions,
     film::{Contribution, Film},
+    math::floor,
     point::{Ray, Segment},
     real::{Real, Vec3},
     scene::Scene,
@@ -13,7 +14,7 @@ use crate::{
     technique::Technique,
     vertex::Vertex,
     walk::WalkVertex,
-    weight::share,
+    weight::{Rivals, share},
 };
 
 /// Two vertices that see each other, as far as their surfaces go.
@@ -35,19 +36,43 @@ const FAR: usize = 1;
 type Block = [[Option<Pair>; BATCH]; BATCH];
 
 /// A walk's vertices.
-type Path<'a, 's, S> = &'a [Option<WalkVertex<'s, S>>];
+type Path<'a, 's, S, R> = &'a [Option<WalkVertex<'s, S, R>>];
 
-/// Connects the two walks' vertices.
-pub(crate) fn connect<'s, S: Scene>(
+/// Which pairs of vertices are joined, where not all of them are.
+#[derive(Clone, Copy)]
+pub(crate) struct Ration {
+    /// The chance of each pair.
+    pub chance: Real,
+    /// In [0, 1): picks among them.
+    pub u: Real,
+}
+
+impl Ration {
+    /// Whether the pair of that number is joined; neighbours are spread over the unit interval by the golden ratio.
+    fn grants(&self, pair: usize) -> bool {
+        const GOLDEN: Real = 0.618_034;
+        let u = self.u + GOLDEN * (pair % 1024) as Real;
+        u - floor(u) < self.chance
+    }
+}
+
+/// Connects the two walks' vertices: all of them, or as many as they are rationed to.
+pub(crate) fn connect<'s, S: Scene, F: Film>(
     scene: &S,
     strategy: &Strategy,
     joined_length: u32,
-    (camera_path, light_path): (Path<'_, 's, S>, Path<'_, 's, S>),
-    film: &mut impl Film,
+    ration: Option<Ration>,
+    (camera_path, light_path): (Path<'_, 's, S, F::Rivals>, Path<'_, 's, S, F::Rivals>),
+    film: &mut F,
 ) {
+    let mut number = 0;
+    let mut granted = || {
+        number += 1;
+        ration.is_none_or(|ration| ration.grants(number))
+    };
     for near in camera_path.chunks(BATCH) {
         for far in light_path.chunks(BATCH) {
-            let mut block = paired(near, far, joined_length);
+            let mut block = paired(near, far, joined_length, &mut granted);
             for (row, vertex) in near.iter().flatten().enumerate() {
                 ask(&vertex.vertex, NEAR, &mut block, |i| (row, i));
             }
@@ -67,11 +92,16 @@ pub(crate) fn connect<'s, S: Scene>(
 
 /// The pairs whose surfaces can scatter light from one to the other.
 #[inline]
-fn paired<'s, S: Scene>(near: Path<'_, 's, S>, far: Path<'_, 's, S>, joined_length: u32) -> Block {
+fn paired<'s, S: Scene, R>(
+    near: Path<'_, 's, S, R>,
+    far: Path<'_, 's, S, R>,
+    joined_length: u32,
+    mut granted: impl FnMut() -> bool,
+) -> Block {
     let mut block = [[None; BATCH]; BATCH];
     for (near, row) in near.iter().flatten().zip(&mut block) {
         for (far, slot) in far.iter().flatten().zip(row) {
-            if near.length.saturating_add(far.length) < joined_length {
+            if near.length.saturating_add(far.length) < joined_length && granted() {
                 *slot = pair(&near.vertex, &far.vertex);
             }
         }
@@ -112,27 +142,30 @@ fn ask<B: Bsdf>(vertex: &Vertex<B>, end: usize, block: &mut Block, place: impl F
     }
 }
 
-fn join<'s, S: Scene>(
+fn join<'s, S: Scene, F: Film>(
     scene: &S,
     strategy: &Strategy,
-    near: &WalkVertex<'s, S>,
-    far: &WalkVertex<'s, S>,
+    near: &WalkVertex<'s, S, F::Rivals>,
+    far: &WalkVertex<'s, S, F::Rivals>,
     pair: &Pair,
-    film: &mut impl Film,
+    film: &mut F,
 ) {
     let Strategy { techniques, heuristic, .. } = *strategy;
     let ([here, there], points) = (&pair.scatters, (&near.vertex.point, &far.vertex.point));
-    let value = near.throughput * here.value * (there.value * far.throughput) / pair.squared_distance;
+    let value = near.throughput * here.value * (there.value * far.throughput) / (pair.squared_distance * techniques.connection as Real);
     if value.is_black() || !Ray::keeps_sides(points.0, points.1) || !scene.unoccluded(points.0, points.1, Segment::Inner) {
         return;
     }
     let (there_per, here_per) = conversions(points.0, points.1, pair.directions[NEAR]);
     let to_far = f64::from(here.pdf.0) * there_per;
     let to_near = f64::from(there.pdf.0) * here_per;
-    let others = far.side.sum(heuristic, to_far, f64::from(there.pdf_rev.0)) + near.side.sum(heuristic, to_near, f64::from(here.pdf_rev.0));
+    let made_less = far.side.sum(heuristic, to_far, f64::from(there.pdf_rev.0));
+    let others = made_less.and(near.side.sum(heuristic, to_near, f64::from(here.pdf_rev.0)));
+    let own = heuristic.of(techniques.connection);
+    film.weighed(own, others);
     film.add(Contribution {
         value,
-        weight: share(heuristic.of(techniques.connection), others) as Real,
+        weight: share(own, others.total()) as Real,
         technique: Technique { s: far.length + 1, t: near.length + 1 },
     });
 }

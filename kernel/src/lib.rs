@@ -50,3 +50,4 @@ pub use spectrum::{BANDS, Spectrum};
 pub use strategy::Strategy;
 pub use technique::{Heuristic, Join, Technique, Techniques};
 pub use walk::WalkVertex;
+pub use weight::{ByJoin, Rivals, Together};

@@ -15,41 +15,52 @@ use crate::{
     spectrum::Spectrum,
     strategy::Strategy,
     technique::{Join, Technique},
-    vertex::{Bounce, Vertex, step},
+    vertex::{Bounce, Vertex, Way, step},
     walk::WalkVertex,
-    weight::{Side, share},
+    weight::{Rivals, Side, share},
 };
 
 struct LightWalk<'a, 's, S: Scene, P, F> {
     scene: &'s S,
     strategy: &'a Strategy,
     joined_length: u32,
+    /// The first of the walk's dimensions.
+    dimension: u32,
     sampler: &'a mut P,
     film: &'a mut F,
 }
 
-/// Traces one light walk; returns how many vertices it left in `store`.
-pub(crate) fn light_walk<'s, S: Scene>(
+/// How far apart the dimensions of two light walks of one sample lie.
+const WALK_STRIDE: u32 = 1 << 20;
+
+/// Traces the light walk of that number; returns how many vertices it left in `store`.
+pub(crate) fn light_walk<'s, S: Scene, F: Film>(
     scene: &'s S,
     strategy: &Strategy,
     joined_length: u32,
+    number: u32,
     sampler: &mut impl Sampler,
-    store: &mut [Option<WalkVertex<'s, S>>],
-    film: &mut impl Film,
+    store: &mut [Option<WalkVertex<'s, S, F::Rivals>>],
+    film: &mut F,
 ) -> usize {
-    let mut walk = LightWalk { scene, strategy, joined_length, sampler, film };
+    let mut walk = LightWalk { scene, strategy, joined_length, dimension: number.wrapping_mul(WALK_STRIDE), sampler, film };
     walk.run(store)
 }
 
 impl<'s, S: Scene, P: Sampler, F: Film> LightWalk<'_, 's, S, P, F> {
-    fn run(&mut self, store: &mut [Option<WalkVertex<'s, S>>]) -> usize {
+    #[inline(always)]
+    fn seek(&mut self, dimension: u32) {
+        self.sampler.seek(Walk::Light, self.dimension.wrapping_add(dimension));
+    }
+
+    fn run(&mut self, store: &mut [Option<WalkVertex<'s, S, F::Rivals>>]) -> usize {
         let Strategy { techniques, heuristic, .. } = *self.strategy;
         let scene = self.scene;
-        self.sampler.seek(Walk::Light, start::LIGHT);
+        self.seek(start::LIGHT);
         let [x, y] = self.sampler.next_pair();
         let Some((id, chance)) = scene.pick_light(None, self.sampler.next()) else { return 0 };
         let light = scene.light(id);
-        self.sampler.seek(Walk::Light, start::DIRECTION);
+        self.seek(start::DIRECTION);
         let [u, v] = self.sampler.next_pair();
         let Some(emission) = light.emit([x, y, u, v]) else { return 0 };
         let Emission { point: mut previous, mut direction, weight, exit } = emission;
@@ -64,28 +75,31 @@ impl<'s, S: Scene, P: Sampler, F: Film> LightWalk<'_, 's, S, P, F> {
             self.splat_light(&light, &previous, chance.0);
         }
 
-        let mut side = Side::start(heuristic, end, if exit.end.can_be_hit() { techniques.light_hit } else { 0.0 });
+        let mut side = Side::start(heuristic, end, Join::LightHit, if exit.end.can_be_hit() { techniques.light_hit } else { 0.0 });
         let mut throughput = weight / chance.0;
         let emitted = throughput.max();
-        let (mut pdf, mut pdf_rev, mut delta) = (spread, 0.0, false);
+        let mut way = (spread, 0.0, false);
         let mut stored = 0;
         let mut length = 1;
         loop {
             if techniques.uses(Join::LensHit) && seen {
-                self.lens_hit(&previous, direction, length, &side, throughput, (pdf, pdf_rev, delta));
+                self.lens_hit(&previous, direction, length, &side, throughput, way);
             }
             // A vertex here makes paths of at least one segment more.
             if length >= self.joined_length {
                 return stored;
             }
             let Some((point, hit)) = scene.intersect(&Ray::leaving(&previous, direction, Segment::Inner)) else { return stored };
-            let effort = if length == 1 {
+            let instead = if length > 1 {
+                (Join::Connection, techniques.connection)
+            } else if techniques.uses(Join::NextEvent) {
                 let picked = f64::from(scene.light_chance(id, Some(&point)).0);
-                techniques.next_event * picked * f64::from(light.next_event_density(&previous, &point).value()) / end
+                let density = f64::from(light.next_event_density(&previous, &point).value());
+                (Join::NextEvent, techniques.next_event * picked * density / end)
             } else {
-                techniques.connection
+                (Join::NextEvent, 0.0)
             };
-            side = side.advance(heuristic, &step(&previous, &point, direction, pdf, pdf_rev, delta, effort));
+            side = side.advance(heuristic, &step(&previous, &point, direction, way, instead));
             let Some(here) = Vertex::new(point, scene.bsdf(&point, hit), -direction, Carried::Importance) else { return stored };
             let dimension = length.wrapping_mul(DIMENSIONS_PER_VERTEX);
             seen = !(scene.hides_emitters() && scene.light_id_at(hit).is_some());
@@ -100,14 +114,14 @@ impl<'s, S: Scene, P: Sampler, F: Film> LightWalk<'_, 's, S, P, F> {
             let Some(bounce) = bounce else { return stored };
             throughput *= bounce.weight;
             if length >= self.strategy.rr_depth {
-                self.sampler.seek(Walk::Light, dimension + vertex::ROULETTE);
+                self.seek(dimension + vertex::ROULETTE);
                 match survive(throughput.max() / emitted, self.sampler.next()) {
                     Some(scale) => throughput = throughput * scale,
                     None => return stored,
                 }
             }
             (previous, direction) = (point, bounce.direction);
-            (pdf, pdf_rev, delta) = (bounce.pdf, bounce.pdf_rev, bounce.delta);
+            way = (bounce.pdf, bounce.pdf_rev, bounce.delta);
             length += 1;
         }
     }
@@ -115,7 +129,7 @@ impl<'s, S: Scene, P: Sampler, F: Film> LightWalk<'_, 's, S, P, F> {
     /// (s, t) = (1, 1): the walk's own first vertex, shown to the lens. Next event's choice of light has no part in it.
     fn splat_light(&mut self, light: &S::Light<'s>, point: &Point, chance: Real) {
         let Strategy { techniques, heuristic, .. } = *self.strategy;
-        self.sampler.seek(Walk::Light, start::SPLAT);
+        self.seek(start::SPLAT);
         let lens = self.sampler.next_pair();
         let Some(seen) = self.scene.camera().see(point, lens) else { return };
         // Light from infinitely far away is told by the line along which it arrives.
@@ -128,12 +142,15 @@ impl<'s, S: Scene, P: Sampler, F: Film> LightWalk<'_, 's, S, P, F> {
         let (to_light, to_lens) = conversions(&seen.point, point, seen.direction);
         let made_by_camera = f64::from(seen.spread.value()) * to_light;
         let on_lens = f64::from(exit.spread.value()) * to_lens;
-        let others = heuristic.of(techniques.light_hit * made_by_camera / made_by_light) + self.lens_hit_share(&seen, on_lens);
+        let by_camera = heuristic.of(techniques.light_hit * made_by_camera / made_by_light);
+        let others = F::Rivals::NONE.with(Join::LightHit, by_camera).with(Join::LensHit, self.lens_hit_share(&seen, on_lens));
+        let own = heuristic.of(techniques.lens_splat);
+        self.film.weighed(own, others);
         self.film.splat(
             seen.raster,
             Contribution {
-                value: exit.radiance * seen.weight * ((made_by_camera / made_by_light) as Real),
-                weight: share(heuristic.of(techniques.lens_splat), others) as Real,
+                value: exit.radiance * seen.weight * ((made_by_camera / (made_by_light * techniques.lens_splat)) as Real),
+                weight: share(own, others.total()) as Real,
                 technique: Technique { s: 1, t: 1 },
             },
         );
@@ -144,18 +161,18 @@ impl<'s, S: Scene, P: Sampler, F: Film> LightWalk<'_, 's, S, P, F> {
         &mut self,
         vertex: &Vertex<B>,
         length: u32,
-        side: &Side,
+        side: &Side<F::Rivals>,
         throughput: Spectrum,
         lens_sees: bool,
     ) -> Option<Bounce> {
         let dimension = length.wrapping_mul(DIMENSIONS_PER_VERTEX);
         let seen = if lens_sees && vertex.joins() && self.strategy.techniques.uses(Join::LensSplat) {
-            self.sampler.seek(Walk::Light, dimension + vertex::ENDPOINT);
+            self.seek(dimension + vertex::ENDPOINT);
             self.scene.camera().see(&vertex.point, self.sampler.next_pair())
         } else {
             None
         };
-        self.sampler.seek(Walk::Light, dimension + vertex::BSDF);
+        self.seek(dimension + vertex::BSDF);
         let u = [self.sampler.next(), self.sampler.next(), self.sampler.next()];
         let (scatter, bounce) = vertex.scatter_and_bounce(seen.as_ref().map(|seen| -seen.direction), u);
         if let (Some(seen), Some(scatter)) = (&seen, &scatter) {
@@ -165,7 +182,7 @@ impl<'s, S: Scene, P: Sampler, F: Film> LightWalk<'_, 's, S, P, F> {
     }
 
     /// t = 1: a vertex of the walk, shown to the lens.
-    fn splat(&mut self, point: &Point, length: u32, side: &Side, throughput: Spectrum, seen: &Seen, scatter: &Scatter) {
+    fn splat(&mut self, point: &Point, length: u32, side: &Side<F::Rivals>, throughput: Spectrum, seen: &Seen, scatter: &Scatter) {
         let Strategy { techniques, heuristic, .. } = *self.strategy;
         if !self.lens_sees(seen, point) {
             return;
@@ -179,12 +196,15 @@ impl<'s, S: Scene, P: Sampler, F: Film> LightWalk<'_, 's, S, P, F> {
             Spread::Parallel(_) => spread,
         };
         let on_lens = f64::from(scatter.pdf.0) * to_lens;
-        let others = side.sum(heuristic, made_by_camera, f64::from(scatter.pdf_rev.0)) + self.lens_hit_share(seen, on_lens);
+        let by_camera = side.sum(heuristic, made_by_camera, f64::from(scatter.pdf_rev.0));
+        let others = by_camera.with(Join::LensHit, self.lens_hit_share(seen, on_lens));
+        let own = heuristic.of(techniques.lens_splat);
+        self.film.weighed(own, others);
         self.film.splat(
             seen.raster,
             Contribution {
-                value: throughput * scatter.value * seen.weight * (importance as Real),
-                weight: share(heuristic.of(techniques.lens_splat), others) as Real,
+                value: throughput * scatter.value * seen.weight * ((importance / techniques.lens_splat) as Real),
+                weight: share(own, others.total()) as Real,
                 technique: Technique { s: length + 1, t: 1 },
             },
         );
@@ -212,7 +232,7 @@ impl<'s, S: Scene, P: Sampler, F: Film> LightWalk<'_, 's, S, P, F> {
     }
 
     /// t = 0: the segment from `previous` crosses the lens. The lens casts no shadow: the walk goes on as if nothing were there.
-    fn lens_hit(&mut self, previous: &Point, direction: Vec3, length: u32, side: &Side, throughput: Spectrum, way: (f64, f64, bool)) {
+    fn lens_hit(&mut self, previous: &Point, direction: Vec3, length: u32, side: &Side<F::Rivals>, throughput: Spectrum, way: Way) {
         let Strategy { techniques, heuristic, .. } = *self.strategy;
         if length > self.joined_length {
             return;
@@ -221,18 +241,19 @@ impl<'s, S: Scene, P: Sampler, F: Film> LightWalk<'_, 's, S, P, F> {
         if !self.lens_sees(&seen, previous) {
             return;
         }
-        let (pdf, pdf_rev, delta) = way;
         let lens = &seen.point;
         let (end, spread) = (f64::from(seen.end.value()), f64::from(seen.spread.value()));
         let cos = f64::from(dot(lens.normal, direction).abs());
         // Showing the vertex before to the lens is the last step's other way; the walk has not counted it yet.
-        let at_lens = side.advance(heuristic, &step(previous, lens, direction, pdf, pdf_rev, delta, techniques.lens_splat));
+        let at_lens = side.advance(heuristic, &step(previous, lens, direction, way, (Join::LensSplat, techniques.lens_splat)));
         let others = at_lens.sum(heuristic, end, spread);
+        let own = heuristic.of(techniques.lens_hit);
+        self.film.weighed(own, others);
         self.film.splat(
             seen.raster,
             Contribution {
-                value: throughput * seen.weight * ((end * spread / cos) as Real),
-                weight: share(heuristic.of(techniques.lens_hit), others) as Real,
+                value: throughput * seen.weight * ((end * spread / (cos * techniques.lens_hit)) as Real),
+                weight: share(own, others.total()) as Real,
                 technique: Technique { s: length + 1, t: 0 },
             },
         );

@@ -34,8 +34,12 @@ pub const DIMENSIONS_PER_VERTEX: u32 = 8;
 pub(crate) mod start {
     /// Of a camera walk: the lens, two; the two before are the caller's.
     pub const LENS: u32 = 2;
+    /// Of a camera walk: which of its vertices are joined to those of the first light walk, of the second, …
+    pub const RATION: u32 = 4;
     /// Of a light walk: the point on the light, two, and the choice of the light.
     pub const LIGHT: u32 = 0;
+    /// Of a sample's light walks: how many there are.
+    pub const COUNT: u32 = 3;
     /// Of a light walk: the direction, two.
     pub const DIRECTION: u32 = 4;
     /// Of a light walk: the lens for its own first vertex, two.

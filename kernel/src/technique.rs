@@ -24,6 +24,13 @@ pub enum Join {
     LensHit,
 }
 
+impl Join {
+    /// How many kinds there are.
+    pub const COUNT: usize = 5;
+    /// Every kind.
+    pub const ALL: [Self; Self::COUNT] = [Self::LightHit, Self::NextEvent, Self::Connection, Self::LensSplat, Self::LensHit];
+}
+
 impl Technique {
     /// The path's length, in segments.
     #[inline(always)]
@@ -46,13 +53,16 @@ impl Technique {
 
 /// How many samples per camera path each kind of join gets; 0 switches it off. This is the one answer to
 /// "is this technique used": the loop that samples and the weight that divides both ask [`Techniques::effort`].
+///
+/// There are n light paths per camera path, the largest of the last three counts; whatever uses them at all shows each of them to the
+/// lens, and so has the count n or 0. Connections alone may be fewer: then each pair of vertices is joined with a chance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Techniques {
     /// s = 0: 0 or 1.
     pub light_hit: f64,
-    /// s = 1: light points per camera vertex.
+    /// s = 1: light points per camera vertex, a whole number.
     pub next_event: f64,
-    /// s, t ≥ 2: times each pair of vertices is joined.
+    /// s, t ≥ 2: times each pair of vertices is joined, in the mean.
     pub connection: f64,
     /// t = 1: light paths per camera path.
     pub lens_splat: f64,
@@ -86,10 +96,29 @@ impl Techniques {
         self.effort(join) > 0.0
     }
 
+    /// One kind of join with its count, and no other.
+    pub const fn only(&self, join: Join) -> Self {
+        let mut one = Self { light_hit: 0.0, next_event: 0.0, connection: 0.0, lens_splat: 0.0, lens_hit: 0.0 };
+        match join {
+            Join::LightHit => one.light_hit = self.light_hit,
+            Join::NextEvent => one.next_event = self.next_event,
+            Join::Connection => one.connection = self.connection,
+            Join::LensSplat => one.lens_splat = self.lens_splat,
+            Join::LensHit => one.lens_hit = self.lens_hit,
+        }
+        one
+    }
+
+    /// Light paths per camera path.
+    #[inline(always)]
+    pub const fn light_walks(&self) -> f64 {
+        self.connection.max(self.lens_splat).max(self.lens_hit)
+    }
+
     /// Whether any technique needs a light walk.
     #[inline(always)]
     pub const fn light_walk(&self) -> bool {
-        self.uses(Join::Connection) || self.uses(Join::LensSplat) || self.uses(Join::LensHit)
+        self.light_walks() > 0.0
     }
 
     /// Whether any technique needs a camera walk.

@@ -7,6 +7,7 @@ use crate::{
     point::Point,
     real::{Real, Vec3},
     spectrum::Spectrum,
+    technique::Join,
     weight::Step,
 };
 
@@ -122,9 +123,12 @@ impl<B: Bsdf> Vertex<B> {
     }
 }
 
-/// A walk's way from `from` to `to`.
+/// The density, or chance, of a direction, that of the way back, and whether it was a Dirac.
+pub(crate) type Way = (f64, f64, bool);
+
+/// A walk's way from `from` to `to`, and the join that would do instead, with its effort.
 #[inline]
-pub(crate) fn step(from: &Point, to: &Point, direction: Vec3, pdf: f64, pdf_rev: f64, delta: bool, effort: f64) -> Step {
+pub(crate) fn step(from: &Point, to: &Point, direction: Vec3, (pdf, pdf_rev, delta): Way, (join, effort): (Join, f64)) -> Step {
     let (forward, backward) = conversions(from, to, direction);
-    Step { pdf, pdf_rev, delta, forward, backward, effort }
+    Step { pdf, pdf_rev, delta, forward, backward, join, effort }
 }

@@ -14,20 +14,105 @@
 //! may come back; what is summed along the walk has an exponent of its own.
 //! The definition, every density multiplied out, is kept in `weight_tests/oracle.rs`.
 
-use crate::{math::times, technique::Heuristic, wide::Wide};
+use crate::{
+    math::times,
+    technique::{Heuristic, Join},
+    wide::Wide,
+};
+
+/// What other techniques would have put into a path, relative to the one that made it: Σ n_j p_j / p_s, taken through the heuristic.
+pub trait Rivals: Copy {
+    /// No other technique.
+    const NONE: Self;
+
+    /// One technique more, of this kind.
+    fn with(self, join: Join, effort: f64) -> Self;
+
+    /// These and those.
+    fn and(self, others: Self) -> Self;
+
+    /// Each of them times x; 0 for 0 · ∞.
+    fn times(self, x: f64) -> Self;
+
+    /// All of them together.
+    fn total(self) -> f64;
+}
+
+/// [`Rivals`] in one sum, as a weight needs them.
+#[derive(Clone, Copy, Debug)]
+pub struct Together(Wide);
+
+impl Rivals for Together {
+    const NONE: Self = Self(Wide::ZERO);
+
+    #[inline]
+    fn with(self, _: Join, effort: f64) -> Self {
+        Self(self.0.plus(effort))
+    }
+
+    #[inline]
+    fn and(self, others: Self) -> Self {
+        Self(self.0.plus(others.0.get()))
+    }
+
+    #[inline]
+    fn times(self, x: f64) -> Self {
+        Self(self.0.times(x))
+    }
+
+    #[inline]
+    fn total(self) -> f64 {
+        self.0.get()
+    }
+}
+
+/// [`Rivals`] by kind of join, for whoever asks what other counts would have made of a path.
+#[derive(Clone, Copy, Debug)]
+pub struct ByJoin([Wide; Join::COUNT]);
+
+impl ByJoin {
+    /// Those of one kind.
+    pub fn of(&self, join: Join) -> f64 {
+        self.0[join as usize].get()
+    }
+}
+
+impl Rivals for ByJoin {
+    const NONE: Self = Self([Wide::ZERO; Join::COUNT]);
+
+    fn with(mut self, join: Join, effort: f64) -> Self {
+        self.0[join as usize] = self.0[join as usize].plus(effort);
+        self
+    }
+
+    fn and(mut self, others: Self) -> Self {
+        self.0.iter_mut().zip(others.0).for_each(|(own, other)| *own = own.plus(other.get()));
+        self
+    }
+
+    fn times(self, x: f64) -> Self {
+        Self(self.0.map(|sum| sum.times(x)))
+    }
+
+    fn total(self) -> f64 {
+        self.0.into_iter().map(Wide::get).sum()
+    }
+}
 
 /// What the newest vertex of a walk knows of the techniques that would have made less of the path from this side.
 /// Written for the light walk (densities L forward, E backward); the camera walk swaps the letters.
 #[derive(Clone, Copy, Debug)]
-pub struct Side {
+pub struct Side<R = Together> {
     /// 1 / L_{s−1}.
     per_forward: f64,
     /// c_{s−1} n_{s−1}: joining the walk's last two vertices.
     here: f64,
+    /// Which join that would be.
+    join: Join,
     /// What turns the newest vertex's pdf_rev into E_{s−2} / L_{s−2}.
     back: f64,
     /// c_{s−2} n_{s−2} + A(s−2).
-    earlier: Wide,
+    earlier: R,
 }
 
 /// How a walk went on from one vertex to the next.
@@ -43,15 +128,17 @@ pub struct Step {
     pub forward: f64,
     /// Turns the new vertex's densities into those of the vertex left behind.
     pub backward: f64,
-    /// The effort of joining the vertex left behind to the new one.
+    /// How the vertex left behind would be joined to the new one.
+    pub join: Join,
+    /// The effort of that.
     pub effort: f64,
 }
 
-impl Side {
+impl<R: Rivals> Side<R> {
     /// A walk's first vertex, made with density `end`; `hit` is the effort of landing on it from the other side, 0 if that cannot be.
     #[inline]
-    pub fn start(heuristic: Heuristic, end: f64, hit: f64) -> Self {
-        Self { per_forward: heuristic.of(1.0 / end), here: heuristic.of(hit), back: 0.0, earlier: Wide::ZERO }
+    pub fn start(heuristic: Heuristic, end: f64, join: Join, hit: f64) -> Self {
+        Self { per_forward: heuristic.of(1.0 / end), here: heuristic.of(hit), join, back: 0.0, earlier: R::NONE }
     }
 
     /// The walk's next vertex.
@@ -61,28 +148,29 @@ impl Side {
         Self {
             per_forward: heuristic.of(1.0 / (step.pdf * step.forward)),
             here: heuristic.of(effort),
+            join: step.join,
             back: times(heuristic.of(step.backward), self.per_forward),
-            earlier: self.closed(heuristic, step.pdf_rev).plus(joined),
+            earlier: self.closed(heuristic, step.pdf_rev).with(self.join, joined),
         }
     }
 
     /// E_{s−2}/L_{s−2} · (c_{s−2} n_{s−2} + A(s−2)), once the reverse density at the newest vertex is known.
     #[inline]
-    fn closed(&self, heuristic: Heuristic, pdf_rev: f64) -> Wide {
+    fn closed(&self, heuristic: Heuristic, pdf_rev: f64) -> R {
         self.earlier.times(times(heuristic.of(pdf_rev), self.back))
     }
 
     /// A(s): the newest vertex is joined to one that makes it with density `across` and has it make the vertex before with `pdf_rev`.
     #[inline]
-    pub fn sum(&self, heuristic: Heuristic, across: f64, pdf_rev: f64) -> f64 {
-        self.closed(heuristic, pdf_rev).plus(self.here).times(times(heuristic.of(across), self.per_forward)).get()
+    pub fn sum(&self, heuristic: Heuristic, across: f64, pdf_rev: f64) -> R {
+        self.closed(heuristic, pdf_rev).with(self.join, self.here).times(times(heuristic.of(across), self.per_forward))
     }
 
     /// A(s) where the newest vertex ends the path, as one that is made with density `end`. What joining the walk's last two vertices
     /// would have done is `instead`, n E_{s−1} taken through the heuristic.
     #[inline]
-    pub fn sum_of_hit(&self, heuristic: Heuristic, end: f64, pdf_rev: f64, instead: f64) -> f64 {
-        self.closed(heuristic, pdf_rev).times(heuristic.of(end)).plus(instead).times(self.per_forward).get()
+    pub fn sum_of_hit(&self, heuristic: Heuristic, end: f64, pdf_rev: f64, (join, instead): (Join, f64)) -> R {
+        self.closed(heuristic, pdf_rev).times(heuristic.of(end)).with(join, instead).times(self.per_forward)
     }
 }
 

@@ -187,7 +187,7 @@ fn refused(form: Form) -> Vec<Held> {
             }
             film.commit(buffer);
         }
-        let picture = film.develop(1.0);
+        let picture = film.develop();
         let off = picture.pixels.iter().flatten().map(|value| f64::from((value - 0.75).abs())).fold(0.0, worse);
         vec![
             Held::none("contributions that are no numbers and were not counted", film.refused().abs_diff(brought) as usize),
@@ -244,7 +244,7 @@ fn tried(width: u32, height: u32, samples: u32, depth_: i64) -> Result<(), Error
             enough.store(status.samples >= 1, Ordering::Relaxed);
             None
         });
-        let picture = film.develop(1.0);
+        let picture = film.develop();
         assert!(!status.failed && bad(&picture) == 0 && (picture.width, picture.height) == (width, height));
     }
     Ok(())

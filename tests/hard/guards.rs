@@ -9,6 +9,7 @@ use bidir::{
 };
 use bidir_kernel::{
     Bsdf, Carried, Heuristic, Ray, Segment, Vec3,
+    technique::Join,
     weight::{Side, Step},
 };
 use cpu_time::ThreadTime;
@@ -85,12 +86,12 @@ fn weights() -> Price {
     let mut dice = Dice::new(4);
     let mut number = || f64::from(dice.number()) + 0.1;
     let steps: Vec<_> = (0..STEPS)
-        .map(|_| Step { pdf: number(), pdf_rev: number(), delta: false, forward: number(), backward: number(), effort: 1.0 })
+        .map(|_| Step { pdf: number(), pdf_rev: number(), delta: false, forward: number(), backward: number(), join: Join::Connection, effort: 1.0 })
         .collect();
     let double = || {
         for walk in steps.chunks(16) {
             black_box(
-                walk.iter().fold(Side::start(Heuristic::Power, 1.0, 1.0), |side, step| side.advance(Heuristic::Power, black_box(step))),
+                walk.iter().fold(<Side>::start(Heuristic::Power, 1.0, Join::LightHit, 1.0), |side, step| side.advance(Heuristic::Power, black_box(step))),
             );
         }
     };

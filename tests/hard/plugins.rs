@@ -334,7 +334,7 @@ fn picture(content: &str, folder: &Path, threads: usize) -> (Image, render::Stat
     let film = Film::new(&subject.description.film).expect("a film");
     let job = render::Job { threads, strictness: Strictness::Lenient, ..subject.job(subject.strategy(PATH, Heuristic::Balance), 16, 1) };
     let status = render::render(&subject.scene, &film, &job, &AtomicBool::new(false), |_| None);
-    (film.develop(0.0), status)
+    (film.develop(), status)
 }
 
 fn remembers(form: Form) -> Vec<Held> {

@@ -52,10 +52,10 @@ impl SingleSide {
 pub mod oracle;
 
 use bidir_kernel as kernel;
-use kernel::Heuristic;
+use kernel::{Heuristic, Join};
 
 impl oracle::Sums for SingleSide {
-    fn start(heuristic: Heuristic, end: f64, hit: f64) -> Self {
+    fn start(heuristic: Heuristic, end: f64, _: Join, hit: f64) -> Self {
         Self::start(heuristic == Heuristic::Power, end, hit)
     }
 
@@ -67,7 +67,7 @@ impl oracle::Sums for SingleSide {
         f64::from(self.sum(heuristic == Heuristic::Power, across, pdf_rev))
     }
 
-    fn sum_of_hit(&self, heuristic: Heuristic, end: f64, pdf_rev: f64, instead: f64) -> f64 {
+    fn sum_of_hit(&self, heuristic: Heuristic, end: f64, pdf_rev: f64, (_, instead): (Join, f64)) -> f64 {
         let power = heuristic == Heuristic::Power;
         let closed = times(times(of(power, pdf_rev), self.back), self.earlier);
         f64::from(self.per_forward * (instead as f32 + of(power, end) * closed))

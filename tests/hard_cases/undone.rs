@@ -8,7 +8,7 @@ use bidir::{
 };
 use bidir_kernel::{
     Bsdf, Carried, Chance, Contribution, Film as _, Heuristic, Lobe, Point, Ray, Real, Sampler, Scatter, Scattered, Segment, Spectrum,
-    Strategy, Technique, Techniques, Vec2, Vec3, Walk, sample, sampler::Independent,
+    Strategy, Technique, Techniques, Together, Vec2, Vec3, Walk, sample, sampler::Independent,
 };
 use bidir_tests::{
     estimators::difference,
@@ -135,6 +135,8 @@ impl<'v> bidir_kernel::Scene for Undone<'v> {
 struct Exposed<'a>(&'a mut TileBuffer, Guard);
 
 impl bidir_kernel::Film for Exposed<'_> {
+    type Rivals = Together;
+
     fn add(&mut self, contribution: Contribution) {
         self.0.add(contribution);
     }
@@ -168,7 +170,7 @@ fn picture(subject: &Subject, guard: Guard, strategy: &Strategy, samples: u32, s
         }
         film.commit(buffer);
     }
-    film.develop(if strategy.techniques.light_walk() { 1.0 } else { 0.0 })
+    film.develop()
 }
 
 fn scene(name: &str) -> Subject {
@@ -286,7 +288,7 @@ fn case_48_with_a_sum_that_takes_whatever_comes() {
     buffer.end();
     film.commit(buffer);
     let bad = |values: &[Real]| vec![Held::none("values that are no finite number", values.iter().filter(|v| !v.is_finite()).count())];
-    stays_green("the film", &bad(film.develop(1.0).pixels.as_flattened()));
+    stays_green("the film", &bad(film.develop().pixels.as_flattened()));
     turns_red("a plain sum", &bad(&plain.0));
 }
 

@@ -43,7 +43,7 @@ fn render(content: &str, folder: &Path, threads: usize) -> (Image, render::Statu
     let job = render::Job { threads, strictness: Strictness::Lenient, ..subject.job(subject.strategy(PATH, Heuristic::Balance), 16, 1) };
     let status = render::render(&subject.scene, &film, &job, &AtomicBool::new(false), |_| None);
     assert_eq!(film.refused(), 0);
-    (film.develop(0.0), status)
+    (film.develop(), status)
 }
 
 #[test]

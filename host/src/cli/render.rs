@@ -124,23 +124,22 @@ pub(super) fn run(arguments: &Render) -> Result<Outcome> {
         width: description.film.width,
         strictness: strictness(&arguments.from),
     };
-    let light_walks = if job.strategy.techniques.light_walk() { 1.0 } else { 0.0 };
     let mut progress = progress(target, arguments.quiet);
     let status = render::render(&scene, &film, &job, &interrupt::flag(), |status| {
-        let error = film.noise(light_walks).map(|noise| noise.relmse);
+        let error = film.noise().map(|noise| noise.relmse);
         progress.update(status.samples, status.elapsed, error);
         error
     });
     progress.finish();
     seconds.render = status.elapsed.as_secs_f64();
 
-    save(&output, &film, light_walks, &status, job.seed)?;
+    save(&output, &film, &status, job.seed)?;
     if film.refused() > 0 {
         eprintln!("warning: {} contributions were not finite and were refused", film.refused());
     }
     seconds.total = start.elapsed().as_secs_f64();
     if let Some(path) = &arguments.stats {
-        statistics(arguments, &description, &scene, &plan, &job, &status, seconds, film.refused(), film.noise(light_walks)).write(path)?;
+        statistics(arguments, &description, &scene, &plan, &job, &status, seconds, film.refused(), film.noise()).write(path)?;
     }
     if !arguments.quiet {
         let Status { samples, elapsed, .. } = &status;
@@ -171,8 +170,8 @@ pub(super) fn verbosity(quiet: bool) -> Verbosity {
     if quiet { Verbosity::Quiet } else { Verbosity::Shown }
 }
 
-fn save(output: &Path, film: &Film, light_walks: f64, status: &Status, seed: u64) -> Result<()> {
-    let image = film.develop(light_walks);
+fn save(output: &Path, film: &Film, status: &Status, seed: u64) -> Result<()> {
+    let image = film.develop();
     let note = |name: &str, value: String| (name.to_owned(), value);
     let notes = vec![
         note("renderer", format!("bidir {}", env!("CARGO_PKG_VERSION"))),

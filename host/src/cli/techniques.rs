@@ -180,9 +180,9 @@ mod tests {
         let job = job(Named::Bdpt.plan().strategy(&description.integrator));
         let film = Film::new(&description.film).unwrap();
         render::render(&scene, &film, &job, &false.into(), |_| None);
-        let image = film.develop(1.0);
+        let image = film.develop();
         let pyramid = pyramid(&description, &scene, &job);
-        let layers = sum(pyramid.techniques().map(|technique| pyramid.develop(technique, 1.0)[0].clone()));
+        let layers = sum(pyramid.techniques().map(|technique| pyramid.develop(technique)[0].clone()));
         for (a, b) in image.pixels.iter().zip(&layers.pixels) {
             assert!((0..3).all(|band| (a[band] - b[band]).abs() <= 1e-5 * a[band].abs().max(0.1)), "{a:?} {b:?}");
         }
@@ -197,7 +197,7 @@ mod tests {
         let limited = pyramid(&description, &scene, &job(strategy));
         let unlimited = pyramid(&description, &scene, &job(Strategy { max_depth: u32::MAX, ..strategy }));
         for technique in limited.techniques() {
-            let [a, b] = [&limited, &unlimited].map(|pyramid| pyramid.develop(technique, 1.0));
+            let [a, b] = [&limited, &unlimited].map(|pyramid| pyramid.develop(technique));
             for (a, b) in a[0].pixels.iter().chain(&a[1].pixels).zip(b[0].pixels.iter().chain(&b[1].pixels)) {
                 assert!((0..3).all(|band| (a[band] - b[band]).abs() <= 1e-5 * a[band].abs().max(1e-3)), "{technique:?} {a:?} {b:?}");
             }
@@ -222,7 +222,7 @@ mod tests {
             let pyramid = pyramid(&description, &scene, &job);
             let effects = Effects::of(&description, &scene);
             for technique in pyramid.techniques() {
-                let black = pyramid.develop(technique, 1.0)[1].pixels.iter().all(|pixel| *pixel == [0.0; 3]);
+                let black = pyramid.develop(technique)[1].pixels.iter().all(|pixel| *pixel == [0.0; 3]);
                 // The lamp stands above what the lens sees at first, and light seldom lands on a lens so small.
                 if technique.length() > 1 && technique.t > 0 || !exists(&effects, technique) {
                     assert_eq!(black, !exists(&effects, technique), "{lens}, {lamp}: {technique:?}");

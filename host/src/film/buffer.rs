@@ -1,6 +1,6 @@
 //! What one unit of work adds to the film, before it is its turn.
 
-use bidir_kernel::{Contribution, Vec2};
+use bidir_kernel::{Contribution, Together, Vec2};
 
 use super::{
     filter::{Profile, Taps},
@@ -9,7 +9,7 @@ use super::{
 };
 
 /// Where a thread puts the contributions of one unit: for every sample [`Exposure::begin`], the kernel's calls, [`Exposure::end`].
-pub trait Exposure: bidir_kernel::Film {
+pub trait Exposure: bidir_kernel::Film<Rivals = Together> {
     /// The work to do: one sample in each of its pixels.
     fn unit(&self) -> Unit;
 
@@ -137,6 +137,8 @@ impl Exposure for TileBuffer {
 }
 
 impl bidir_kernel::Film for TileBuffer {
+    type Rivals = Together;
+
     #[inline]
     fn add(&mut self, contribution: Contribution) {
         let value = contribution.value * contribution.weight;

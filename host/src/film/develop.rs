@@ -23,7 +23,7 @@ pub struct Noise {
 
 /// What turns sums into values.
 struct Scale {
-    /// pixels / N.
+    /// pixels / samples.
     light: f64,
     /// 1 / ∫ h within the window, per column and per row.
     columns: Vec<f64>,
@@ -31,11 +31,11 @@ struct Scale {
 }
 
 impl Film {
-    /// The picture: samples of both halves, splats divided by the number of light walks, of which each sample made that many.
+    /// The picture: samples of both halves.
     /// A pixel that no sample reached is black.
-    pub fn develop(&self, light_walks_per_sample: f64) -> Image {
+    pub fn develop(&self) -> Image {
         let samples = lock(&self.tally).samples;
-        let scale = self.scale((samples[0] + samples[1]) as f64 * light_walks_per_sample);
+        let scale = self.scale((samples[0] + samples[1]) as f64);
         let mut image = Image::black(self.layout.crop.width, self.layout.crop.height);
         self.each(|index, column, row, [even, odd]| {
             let value = scale.value(&(even + odd), column, row);
@@ -45,9 +45,9 @@ impl Film {
     }
 
     /// The pictures that samples of even and of odd number make on their own; independent unless the sampler ties samples together.
-    pub fn halves(&self, light_walks_per_sample: f64) -> [Image; 2] {
+    pub fn halves(&self) -> [Image; 2] {
         let samples = lock(&self.tally).samples;
-        let scales = samples.map(|n| self.scale(n as f64 * light_walks_per_sample));
+        let scales = samples.map(|n| self.scale(n as f64));
         let mut images = [0, 1].map(|_| Image::black(self.layout.crop.width, self.layout.crop.height));
         self.each(|index, column, row, sums| {
             for ((image, scale), sum) in images.iter_mut().zip(&scales).zip(sums) {
@@ -63,15 +63,15 @@ impl Film {
     /// σ² / (m + n); so (a − b)² m n / (m + n)² estimates it without bias if samples are independent, and from above where the
     /// sampler stratifies them. relMSE divides it by the squared value of the picture itself: it is low while few pixels have seen
     /// the light that matters, like every estimate from the samples alone.
-    pub fn noise(&self, light_walks_per_sample: f64) -> Option<Noise> {
+    pub fn noise(&self) -> Option<Noise> {
         let samples = lock(&self.tally).samples.map(|n| n as f64);
         let total = samples[0] + samples[1];
         if samples.contains(&0.0) {
             return None;
         }
         let share = samples[0] * samples[1] / (total * total);
-        let scales = samples.map(|n| self.scale(n * light_walks_per_sample));
-        let whole = self.scale(total * light_walks_per_sample);
+        let scales = samples.map(|n| self.scale(n));
+        let whole = self.scale(total);
         let mut relative = Vec::with_capacity(self.layout.pixels());
         let mut sum = 0.0;
         self.each(|_, column, row, [even, odd]| {
@@ -86,11 +86,11 @@ impl Film {
         Some(Noise { relmse: trimmed_mean(&mut relative, TRIM), mse: sum / pixels })
     }
 
-    fn scale(&self, light_walks: f64) -> Scale {
+    fn scale(&self, samples: f64) -> Scale {
         let crop = &self.layout.crop;
         let reciprocals = |length| self.layout.masses(length).into_iter().map(|m| if m > 0.0 { 1.0 / m } else { 0.0 }).collect();
         Scale {
-            light: if light_walks > 0.0 { self.layout.pixels() as f64 / light_walks } else { 0.0 },
+            light: if samples > 0.0 { self.layout.pixels() as f64 / samples } else { 0.0 },
             columns: reciprocals(crop.width),
             rows: reciprocals(crop.height),
         }

@@ -24,12 +24,12 @@
 //!         });
 //!     }
 //! });
-//! assert!(film.develop(1.0).pixels.iter().all(|&pixel| pixel == [1.0; 3]));
+//! assert!(film.develop().pixels.iter().all(|&pixel| pixel == [1.0; 3]));
 //! # Ok::<(), bidir::error::Error>(())
 //! ```
 //!
 //! A pixel is Σ h f / Σ h over camera samples plus Σ h f · pixels / N over splats, h the filter (normalised for splats), N the number
-//! of light walks, pixels those of the crop window. At the window's border the part of h outside never arrives: splats are divided
+//! of all samples, pixels those of the crop window. At the window's border the part of h outside never arrives: splats are divided
 //! by h's mass inside.
 
 mod band;

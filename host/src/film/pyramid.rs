@@ -2,7 +2,7 @@
 
 use std::sync::Mutex;
 
-use bidir_kernel::{Contribution, Join, Technique, Vec2};
+use bidir_kernel::{Contribution, Join, Technique, Together, Vec2};
 
 use crate::{
     error::{Error, Result},
@@ -93,15 +93,14 @@ impl Pyramid {
     }
 
     /// What a technique brought, weighted and unweighted; the weighted layers add up to the image. Black for techniques without a layer.
-    pub fn develop(&self, technique: Technique, light_walks_per_sample: f64) -> [Image; 2] {
+    pub fn develop(&self, technique: Technique) -> [Image; 2] {
         let mut images = [0, 1].map(|_| Image::black(self.layout.crop.width, self.layout.crop.height));
         let Some(layer) = layer(technique, self.longest) else { return images };
         let pixels = self.layout.pixels();
         let sums = lock(&self.sums);
-        let light_walks = sums.total as f64 * light_walks_per_sample;
         for i in 0..pixels {
             let scale = match technique.join() {
-                Join::LensSplat | Join::LensHit => pixels as f64 / light_walks,
+                Join::LensSplat | Join::LensHit => pixels as f64 / sums.total as f64,
                 Join::LightHit | Join::NextEvent | Join::Connection => 1.0 / f64::from(sums.samples[i]),
             };
             let scale = if scale.is_finite() { scale } else { 0.0 };
@@ -197,6 +196,8 @@ impl Exposure for PyramidBuffer {
 }
 
 impl bidir_kernel::Film for PyramidBuffer {
+    type Rivals = Together;
+
     fn add(&mut self, contribution: Contribution) {
         self.take(self.pixel, contribution);
     }
@@ -265,9 +266,7 @@ mod tests {
         }
         for technique in pyramid.techniques() {
             let value = technique.s as f32 + 10.0 * technique.t as f32;
-            // Two light walks per sample: each counts half.
-            let value = if technique.t <= 1 { value / 2.0 } else { value };
-            let [weighted, unweighted] = pyramid.develop(technique, 2.0);
+            let [weighted, unweighted] = pyramid.develop(technique);
             assert!(unweighted.pixels.iter().all(|p| (p[1] - value).abs() < 1e-5), "{technique:?}");
             assert!(weighted.pixels.iter().all(|p| (p[2] - value / (technique.s as f32 + 1.0)).abs() < 1e-5), "{technique:?}");
         }

@@ -80,7 +80,7 @@ fn camera_samples_keep_a_flat_field_exactly() {
             buffer.add(light([1.0; 3]));
             buffer.end();
         });
-        assert_eq!(largest_difference(&film.develop(1.0), |_, _| 1.0), 0.0, "{filter:?} {crop:?}");
+        assert_eq!(largest_difference(&film.develop(), |_, _| 1.0), 0.0, "{filter:?} {crop:?}");
         assert_eq!(film.samples(), 3 * u64::from(crop.width * crop.height));
     }
 }
@@ -96,10 +96,10 @@ fn splats_keep_a_flat_field_to_the_border() {
             buffer.splat(stratum(pixel, n, 16), light([1.0; 3]));
             buffer.end();
         });
-        let worst = largest_difference(&film.develop(1.0), |_, _| 1.0);
+        let worst = largest_difference(&film.develop(), |_, _| 1.0);
         let allowed = if matches!(filter, Filter::Gaussian { .. }) { 1e-3 } else { 2e-7 };
         assert!(worst <= allowed, "{filter:?} {crop:?}: {worst}");
-        let [even, odd] = film.halves(1.0);
+        let [even, odd] = film.halves();
         assert!(largest_difference(&even, |x, y| 2.0 - odd.at(x, y)[0]) < 2.0 * allowed);
     }
 }
@@ -122,7 +122,7 @@ fn splats_and_camera_samples_land_in_the_same_pixels() {
                 buffer.end();
             });
         }
-        let (camera, splats) = (camera.develop(1.0), splats.develop(1.0));
+        let (camera, splats) = (camera.develop(), splats.develop());
         for (a, b) in camera.pixels.iter().zip(&splats.pixels) {
             assert!((a[0] - b[0]).abs() < 1.5e-3 * a[0], "{filter:?} {crop:?}: {a:?} {b:?}");
         }
@@ -153,9 +153,9 @@ fn commit_order_threads_and_passes_do_not_change_a_bit() {
         }
         for film in [&backwards, &threaded] {
             assert_eq!(film.samples(), ordered.samples());
-            assert_eq!(film.develop(1.0), ordered.develop(1.0));
-            assert_eq!(film.halves(1.0), ordered.halves(1.0));
-            assert_eq!(film.noise(1.0), ordered.noise(1.0));
+            assert_eq!(film.develop(), ordered.develop());
+            assert_eq!(film.halves(), ordered.halves());
+            assert_eq!(film.noise(), ordered.noise());
         }
     }
 }
@@ -173,7 +173,7 @@ fn a_crop_is_the_full_image_cropped() {
                 buffer.end();
             });
         }
-        let (full, part) = (full.develop(1.0), part.develop(1.0));
+        let (full, part) = (full.develop(), part.develop());
         let reach =
             layout::Layout::new(&FilmSettings { width: 40, height: 70, crop, filter }).expect("a window inside the image").profile.reach();
         for y in reach..crop.height - reach {
@@ -198,10 +198,10 @@ fn the_halves_estimate_the_variance_without_bias() {
             buffer.splat(stratum(pixel, 0, 1), light([1.0; 3]));
             buffer.end();
         });
-        let noise = film.noise(1.0).expect("two samples");
+        let noise = film.noise().expect("two samples");
         assert!((noise.mse * f64::from(n) - 1.0).abs() < 4.0 * 0.027 / 3f64.sqrt() * 1.5, "{n}: {}", noise.mse);
     }
-    assert_eq!(film(CROPS[0], Filter::Box).noise(1.0), None);
+    assert_eq!(film(CROPS[0], Filter::Box).noise(), None);
 }
 
 #[test]
@@ -221,14 +221,14 @@ fn what_is_not_finite_is_refused_and_its_sample_still_counts() {
         }
         buffer.end();
     });
-    assert_eq!(largest_difference(&film.develop(1.0), |_, _| 1.5), 0.0);
+    assert_eq!(largest_difference(&film.develop(), |_, _| 1.5), 0.0);
     assert_eq!(film.refused(), 5 * 2 * 19 * 3);
 }
 
 #[test]
 fn nothing_exposed_is_black_and_a_bad_window_is_refused() {
     let film = film(CROPS[1], FILTERS[2]);
-    assert_eq!(film.develop(1.0), Image::black(19, 3));
+    assert_eq!(film.develop(), Image::black(19, 3));
     let outside = Crop { x: 39, y: 0, width: 2, height: 1 };
     for crop in [outside, Crop { width: 0, ..outside }, Crop { x: u32::MAX, ..outside }] {
         assert!(Film::new(&FilmSettings { width: 40, height: 70, crop, filter: Filter::Box }).is_err());

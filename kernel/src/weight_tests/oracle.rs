@@ -8,24 +8,24 @@ use std::vec::Vec;
 
 use super::kernel::{
     technique::{Heuristic, Join, Technique, Techniques},
-    weight::{Side, Step, share},
+    weight::{Rivals, Side, Step, share},
 };
 
 /// What adds up the techniques on one side of a join: [`Side`], or another form of it.
 pub trait Sums: Sized {
     /// See [`Side::start`].
-    fn start(heuristic: Heuristic, end: f64, hit: f64) -> Self;
+    fn start(heuristic: Heuristic, end: f64, join: Join, hit: f64) -> Self;
     /// See [`Side::advance`].
     fn advance(&self, heuristic: Heuristic, step: &Step) -> Self;
     /// See [`Side::sum`].
     fn sum(&self, heuristic: Heuristic, across: f64, pdf_rev: f64) -> f64;
     /// See [`Side::sum_of_hit`].
-    fn sum_of_hit(&self, heuristic: Heuristic, end: f64, pdf_rev: f64, instead: f64) -> f64;
+    fn sum_of_hit(&self, heuristic: Heuristic, end: f64, pdf_rev: f64, instead: (Join, f64)) -> f64;
 }
 
-impl Sums for Side {
-    fn start(heuristic: Heuristic, end: f64, hit: f64) -> Self {
-        Side::start(heuristic, end, hit)
+impl<R: Rivals> Sums for Side<R> {
+    fn start(heuristic: Heuristic, end: f64, join: Join, hit: f64) -> Self {
+        Side::start(heuristic, end, join, hit)
     }
 
     fn advance(&self, heuristic: Heuristic, step: &Step) -> Self {
@@ -33,11 +33,11 @@ impl Sums for Side {
     }
 
     fn sum(&self, heuristic: Heuristic, across: f64, pdf_rev: f64) -> f64 {
-        Side::sum(self, heuristic, across, pdf_rev)
+        Side::sum(self, heuristic, across, pdf_rev).total()
     }
 
-    fn sum_of_hit(&self, heuristic: Heuristic, end: f64, pdf_rev: f64, instead: f64) -> f64 {
-        Side::sum_of_hit(self, heuristic, end, pdf_rev, instead)
+    fn sum_of_hit(&self, heuristic: Heuristic, end: f64, pdf_rev: f64, instead: (Join, f64)) -> f64 {
+        Side::sum_of_hit(self, heuristic, end, pdf_rev, instead).total()
     }
 }
 
@@ -146,13 +146,13 @@ impl Path {
     }
 
     /// The light walk's first `s` vertices.
-    fn light_side<S: Sums>(&self, s: usize, techniques: &Techniques, heuristic: Heuristic) -> S {
-        let mut side = S::start(heuristic, self.light_end, if self.delta[0] { 0.0 } else { techniques.light_hit });
+    pub fn light_side<S: Sums>(&self, s: usize, techniques: &Techniques, heuristic: Heuristic) -> S {
+        let mut side = S::start(heuristic, self.light_end, Join::LightHit, if self.delta[0] { 0.0 } else { techniques.light_hit });
         for i in 1..s {
-            let effort = match i {
-                i if i == self.k() => techniques.lens_splat,
-                1 => techniques.next_event * self.next_event_end / self.light_end,
-                _ => techniques.connection,
+            let (join, effort) = match i {
+                i if i == self.k() => (Join::LensSplat, techniques.lens_splat),
+                1 => (Join::NextEvent, techniques.next_event * self.next_event_end / self.light_end),
+                _ => (Join::Connection, techniques.connection),
             };
             side = side.advance(
                 heuristic,
@@ -162,6 +162,7 @@ impl Path {
                     delta: i > 1 && self.delta[i - 1],
                     forward: self.forward[i - 1],
                     backward: self.backward[i - 1],
+                    join,
                     effort,
                 },
             );
@@ -170,11 +171,12 @@ impl Path {
     }
 
     /// The camera walk's first `t` vertices.
-    fn camera_side<S: Sums>(&self, t: usize, techniques: &Techniques, heuristic: Heuristic) -> S {
+    pub fn camera_side<S: Sums>(&self, t: usize, techniques: &Techniques, heuristic: Heuristic) -> S {
         let k = self.k();
-        let mut side = S::start(heuristic, self.lens_end, if self.delta[k] { 0.0 } else { techniques.lens_hit });
+        let mut side = S::start(heuristic, self.lens_end, Join::LensHit, if self.delta[k] { 0.0 } else { techniques.lens_hit });
         for made in 1..t {
             let i = k - made;
+            let join = if made == 1 { Join::LensSplat } else { Join::Connection };
             side = side.advance(
                 heuristic,
                 &Step {
@@ -183,7 +185,8 @@ impl Path {
                     delta: made > 1 && self.delta[i + 1],
                     forward: self.backward[i],
                     backward: self.forward[i],
-                    effort: if made == 1 { techniques.lens_splat } else { techniques.connection },
+                    join,
+                    effort: techniques.effort(join),
                 },
             );
         }
@@ -207,9 +210,9 @@ impl Path {
                 let side = self.camera_side::<S>(k + 1, techniques, heuristic);
                 let smooth = k == 1 || !self.delta[1];
                 let instead = match (smooth, k) {
-                    (false, _) => 0.0,
-                    (true, 1) => heuristic.of(techniques.lens_splat * self.light_end),
-                    (true, _) => heuristic.of(techniques.next_event * self.next_event_end),
+                    (false, _) => (Join::NextEvent, 0.0),
+                    (true, 1) => (Join::LensSplat, heuristic.of(techniques.lens_splat * self.light_end)),
+                    (true, _) => (Join::NextEvent, heuristic.of(techniques.next_event * self.next_event_end)),
                 };
                 share(own, side.sum_of_hit(heuristic, self.light_end, self.to_lens[0], instead))
             }

@@ -4,7 +4,7 @@ use bidir::{
     plugin::Strictness,
     scene::{Scene, description::Description, view::View},
 };
-use bidir_kernel::{Camera, Contribution, Film, Point, Scene as _, Strategy, Techniques, Vec2, sample, sampler::Independent};
+use bidir_kernel::{Camera, Contribution, Film, Point, Scene as _, Strategy, Techniques, Together, Vec2, sample, sampler::Independent};
 
 use crate::told;
 
@@ -15,6 +15,8 @@ const DEPTH: u32 = 6;
 struct Nowhere;
 
 impl Film for Nowhere {
+    type Rivals = Together;
+
     fn add(&mut self, _: Contribution) {}
 
     fn splat(&mut self, _: Vec2, _: Contribution) {}

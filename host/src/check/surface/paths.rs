@@ -7,7 +7,7 @@
 
 use bidir_kernel::{
     Bsdf, Carried, Chance, Heuristic, Join, Lobe, Made, Real, Scattered, Technique, Vec3,
-    weight::{Side, Step, share},
+    weight::{Rivals, Side, Step, share},
 };
 
 use super::view;
@@ -195,7 +195,7 @@ impl Path {
 
     /// The light walk's first s vertices.
     fn light_side(&self, s: usize, heuristic: Heuristic) -> Side {
-        (1..s).fold(Side::start(heuristic, 1.0, 1.0), |side, i| {
+        (1..s).fold(Side::start(heuristic, 1.0, Join::LightHit, 1.0), |side, i| {
             let told = self.at(i - 1).map_or(Told { pdf: self.emitted, pdf_rev: 0.0 }, |vertex| vertex.light);
             side.advance(heuristic, &self.step(told, i - 1, self.forward[i - 1], self.backward[i - 1]))
         })
@@ -204,7 +204,7 @@ impl Path {
     /// The camera walk's first t vertices.
     fn camera_side(&self, t: usize, heuristic: Heuristic) -> Side {
         let k = self.k();
-        (1..t).fold(Side::start(heuristic, 1.0, 1.0), |side, made| {
+        (1..t).fold(Side::start(heuristic, 1.0, Join::LensHit, 1.0), |side, made| {
             let i = k - made;
             let told = self.at(i + 1).map_or(Told { pdf: self.seen, pdf_rev: 0.0 }, |vertex| vertex.camera);
             side.advance(heuristic, &self.step(told, i + 1, self.backward[i], self.forward[i]))
@@ -212,7 +212,7 @@ impl Path {
     }
 
     fn step(&self, told: Told, from: usize, forward: f64, backward: f64) -> Step {
-        Step { pdf: told.pdf, pdf_rev: told.pdf_rev, delta: self.delta(from), forward, backward, effort: 1.0 }
+        Step { pdf: told.pdf, pdf_rev: told.pdf_rev, delta: self.delta(from), forward, backward, join: Join::Connection, effort: 1.0 }
     }
 
     /// The weight of the technique that makes s vertices from the light.
@@ -227,11 +227,11 @@ impl Path {
             Join::NextEvent | Join::Connection | Join::LensSplat => {
                 let far = self.at(s - 1).map_or(Told { pdf: self.emitted, pdf_rev: 0.0 }, |vertex| vertex.light_end);
                 let (to_far, to_near) = (near.pdf * self.backward[s - 1], far.pdf * self.forward[s - 1]);
-                self.light_side(s, heuristic).sum(heuristic, to_far, far.pdf_rev)
-                    + self.camera_side(k + 1 - s, heuristic).sum(heuristic, to_near, near.pdf_rev)
+                let made_less = self.light_side(s, heuristic).sum(heuristic, to_far, far.pdf_rev);
+                made_less.and(self.camera_side(k + 1 - s, heuristic).sum(heuristic, to_near, near.pdf_rev))
             }
         };
-        share(1.0, others)
+        share(1.0, others.total())
     }
 
     /// The sum of all techniques' weights.

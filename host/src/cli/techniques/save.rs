@@ -102,7 +102,7 @@ pub(super) fn save(folder: &Path, pyramid: &Pyramid, there: &[Technique], mut in
     let mut shown: [Vec<Layer>; 2] = [Vec::new(), Vec::new()];
     for &technique in there {
         let Technique { s, t } = technique;
-        let images = pyramid.develop(technique, 1.0);
+        let images = pyramid.develop(technique);
         let [weighted, unweighted] = [0, 1].map(|i| Part { file: format!("{}/s{s}_t{t}.exr", KINDS[i]), mean: mean(&images[i]) });
         for ((image, part), shown) in images.iter().zip([&weighted, &unweighted]).zip(&mut shown) {
             write::write(&folder.join(&part.file), &Layers { image, named: Vec::new(), notes: notes.clone() })?;

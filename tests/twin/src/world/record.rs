@@ -3,7 +3,7 @@
 use std::cell::{Cell, RefCell};
 
 use super::super::kernel::{
-    Bsdf, Carried, Contribution, Film, Lobe, Real, Sampler, Scatter, Scattered, Vec2, Vec3, Walk, sampler::Independent,
+    Bsdf, Carried, Contribution, Film, Lobe, Real, Sampler, Scatter, Scattered, Together, Vec2, Vec3, Walk, sampler::Independent,
 };
 use super::surface::Surface;
 use crate::{
@@ -80,6 +80,8 @@ pub struct Kept<'a> {
 }
 
 impl Film for Kept<'_> {
+    type Rivals = Together;
+
     fn add(&mut self, contribution: Contribution) {
         let Contribution { value, weight, technique } = contribution;
         let given = Given { s: technique.s, t: technique.t, value: value.0.map(f64::from), weight: f64::from(weight) };
