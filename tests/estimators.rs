@@ -22,7 +22,8 @@ pub struct Estimator {
     samples: u32,
 }
 
-const fn estimator(name: &'static str, techniques: Techniques, heuristic: Heuristic, samples: u32) -> Estimator {
+/// One of them.
+pub const fn estimator(name: &'static str, techniques: Techniques, heuristic: Heuristic, samples: u32) -> Estimator {
     Estimator { name, techniques, heuristic, samples }
 }
 

@@ -132,9 +132,9 @@ impl Pyramids {
 
     /// The weighted mean of all paths with `length` segments.
     pub fn length(&self, length: u32) -> Estimate {
-        Estimate::of(&self.means(|pyramid| {
-            (0..=length + 1).map(|s| mean_of(&pyramid.develop(Technique { s, t: length + 1 - s })[0])).sum()
-        }))
+        Estimate::of(
+            &self.means(|pyramid| (0..=length + 1).map(|s| mean_of(&pyramid.develop(Technique { s, t: length + 1 - s })[0])).sum()),
+        )
     }
 
     fn means(&self, of: impl Fn(&Pyramid) -> f64) -> Vec<f64> {

@@ -71,6 +71,8 @@ pub struct Techniques {
 }
 
 impl Techniques {
+    /// Nothing.
+    pub const NONE: Self = Self { light_hit: 0.0, next_event: 0.0, connection: 0.0, lens_splat: 0.0, lens_hit: 0.0 };
     /// Path tracing with next event estimation.
     pub const PATH: Self = Self { light_hit: 1.0, next_event: 1.0, connection: 0.0, lens_splat: 0.0, lens_hit: 0.0 };
     /// Light tracing: everything that a light walk can show the lens or land on it; emitters the lens sees directly, by both.
@@ -98,7 +100,7 @@ impl Techniques {
 
     /// One kind of join with its count, and no other.
     pub const fn only(&self, join: Join) -> Self {
-        let mut one = Self { light_hit: 0.0, next_event: 0.0, connection: 0.0, lens_splat: 0.0, lens_hit: 0.0 };
+        let mut one = Self::NONE;
         match join {
             Join::LightHit => one.light_hit = self.light_hit,
             Join::NextEvent => one.next_event = self.next_event,

@@ -1,6 +1,11 @@
 //! What both walks leave behind: vertices to be connected.
 
-use crate::{scene::Scene, spectrum::Spectrum, vertex::Vertex, weight::{Side, Together}};
+use crate::{
+    scene::Scene,
+    spectrum::Spectrum,
+    vertex::Vertex,
+    weight::{Side, Together},
+};
 
 /// A vertex of a camera or light walk, kept for connections.
 pub struct WalkVertex<'s, S: Scene + 's, R = Together> {

@@ -2,6 +2,7 @@
 
 mod cameras;
 mod lights;
+mod plans;
 mod surfaces;
 
 use crate::{

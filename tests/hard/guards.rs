@@ -86,13 +86,21 @@ fn weights() -> Price {
     let mut dice = Dice::new(4);
     let mut number = || f64::from(dice.number()) + 0.1;
     let steps: Vec<_> = (0..STEPS)
-        .map(|_| Step { pdf: number(), pdf_rev: number(), delta: false, forward: number(), backward: number(), join: Join::Connection, effort: 1.0 })
+        .map(|_| Step {
+            pdf: number(),
+            pdf_rev: number(),
+            delta: false,
+            forward: number(),
+            backward: number(),
+            join: Join::Connection,
+            effort: 1.0,
+        })
         .collect();
     let double = || {
         for walk in steps.chunks(16) {
-            black_box(
-                walk.iter().fold(<Side>::start(Heuristic::Power, 1.0, Join::LightHit, 1.0), |side, step| side.advance(Heuristic::Power, black_box(step))),
-            );
+            black_box(walk.iter().fold(<Side>::start(Heuristic::Power, 1.0, Join::LightHit, 1.0), |side, step| {
+                side.advance(Heuristic::Power, black_box(step))
+            }));
         }
     };
     let single = || {

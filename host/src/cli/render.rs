@@ -17,15 +17,23 @@ use crate::{
     film::{Film, Noise},
     image::write::{self, Layers},
     load,
-    plan::Plan,
+    plan::{Named, Plan, Stage, choice::Choice, effects::Effects, words},
     plugin::{Library, Strictness},
-    render::{self, Job, Status, Target},
+    render::{self, Auto, Given, Job, Status, Target},
     scene::{Scene, description::Description},
 };
 
 /// The scene of a `render` without one.
 const WELCOME: &str = include_str!("../../../examples/scenes/welcome.xml");
 const WELCOME_NAME: &str = "welcome.xml";
+
+/// The plan that ran, and how it came about.
+struct Planned {
+    plan: Plan,
+    choice: Option<Choice>,
+    /// Wall-clock time of pilots.
+    elapsed: Duration,
+}
 
 /// Reads a scene, or the one that comes with the program, and says on standard error what the user should know of it.
 pub(super) fn read(scene: Option<&Path>, from: &SceneArguments, stages: &mut Stages) -> Result<Description> {
@@ -93,12 +101,10 @@ pub(super) fn run(arguments: &Render) -> Result<Outcome> {
     if let Some(path) = &arguments.stats {
         stats::check_writable(path)?;
     }
-    let planning = Instant::now();
-    let plan = match &arguments.plan {
-        Some(path) => Plan::read(path)?,
-        None => arguments.integrator.plan(),
+    let given = match &arguments.plan {
+        Some(path) => Some(Plan::read(path)?),
+        None => arguments.integrator.stage().map(Plan::fixed),
     };
-    seconds.plan = planning.elapsed().as_secs_f64();
 
     let mut stages = Stages::new(verbosity(arguments.quiet));
     let loading = Instant::now();
@@ -116,7 +122,7 @@ pub(super) fn run(arguments: &Render) -> Result<Outcome> {
 
     let target = target(arguments, &description);
     let job = Job {
-        strategy: plan.strategy(&description.integrator),
+        strategy: Stage::BIDIRECTIONAL.strategy(&description.integrator),
         seed: arguments.seed.unwrap_or(description.seed),
         numbers: arguments.sampler,
         threads: thread_count(arguments.threads),
@@ -125,13 +131,28 @@ pub(super) fn run(arguments: &Render) -> Result<Outcome> {
         strictness: strictness(&arguments.from),
     };
     let mut progress = progress(target, arguments.quiet);
-    let status = render::render(&scene, &film, &job, &interrupt::flag(), |status| {
+    let report = |status: &Status| {
         let error = film.noise().map(|noise| noise.relmse);
         progress.update(status.samples, status.elapsed, error);
         error
-    });
+    };
+    let (status, planned) = match given {
+        Some(plan) => {
+            let mut director = Given { plan, integrator: description.integrator.clone() };
+            (
+                render::directed(&scene, &film, &job, &mut director, &interrupt::flag(), report),
+                Planned { plan: director.plan, choice: None, elapsed: Duration::ZERO },
+            )
+        }
+        None => {
+            let mut director = Auto::new(&description, &Effects::of(&description, &scene));
+            let status = render::directed(&scene, &film, &job, &mut director, &interrupt::flag(), report);
+            (status, Planned { plan: director.plan().clone(), choice: director.choice().cloned(), elapsed: director.elapsed })
+        }
+    };
     progress.finish();
-    seconds.render = status.elapsed.as_secs_f64();
+    seconds.plan = planned.elapsed.as_secs_f64();
+    seconds.render = status.elapsed.saturating_sub(planned.elapsed).as_secs_f64();
 
     save(&output, &film, &status, job.seed)?;
     if film.refused() > 0 {
@@ -139,10 +160,13 @@ pub(super) fn run(arguments: &Render) -> Result<Outcome> {
     }
     seconds.total = start.elapsed().as_secs_f64();
     if let Some(path) = &arguments.stats {
-        statistics(arguments, &description, &scene, &plan, &job, &status, seconds, film.refused(), film.noise()).write(path)?;
+        statistics(arguments, &description, &scene, &planned.plan, &job, &status, seconds, film.refused(), film.noise()).write(path)?;
     }
     if !arguments.quiet {
         let Status { samples, elapsed, .. } = &status;
+        if let (Named::Auto, Some(stage), None) = (arguments.integrator, planned.plan.last(), &arguments.plan) {
+            println!("plan: {}", words::line(stage, planned.choice.as_ref()));
+        }
         println!("{samples} samples per pixel in {:.1} s: {}", elapsed.as_secs_f64(), output.display());
     }
     conclude(&status)
@@ -202,13 +226,13 @@ fn statistics(
         seconds,
         cpu_seconds: CpuSeconds { render: status.cpu.as_secs_f64() },
         camera_paths,
-        light_paths: if job.strategy.techniques.light_walk() { camera_paths } else { 0 },
+        light_paths: (plan.light_paths(status.samples) * f64::from(crop.width) * f64::from(crop.height)).round() as u64,
         rays: status.rays,
         refused,
         quarantined: status.quarantine.count(),
         estimated_error: noise.map(|noise| noise.relmse),
         integrator: if arguments.plan.is_some() { "plan" } else { arguments.integrator.name() },
-        plan: *plan,
+        plan: plan.clone(),
         threads: job.threads,
         seed: job.seed,
         sampler: job.numbers,

@@ -17,7 +17,7 @@ use crate::{
     error::{Error, Result},
     film::Pyramid,
     image::write,
-    plan::{Named, effects::Effects, joins::exists},
+    plan::{Stage, effects::Effects, joins::exists},
     render::{self, Job, Status, Target},
     scene::{Scene, description::Description},
 };
@@ -40,7 +40,7 @@ pub(super) fn run(arguments: &Techniques) -> Result<Outcome> {
     }
 
     let job = Job {
-        strategy: Named::Bdpt.plan().strategy(&description.integrator),
+        strategy: Stage::BIDIRECTIONAL.strategy(&description.integrator),
         numbers: arguments.sampler,
         seed: arguments.seed.unwrap_or(description.seed),
         threads: thread_count(arguments.threads),
@@ -177,7 +177,7 @@ mod tests {
     #[test]
     fn the_weighted_layers_add_up_to_the_image() {
         let (description, scene) = room();
-        let job = job(Named::Bdpt.plan().strategy(&description.integrator));
+        let job = job(Stage::BIDIRECTIONAL.strategy(&description.integrator));
         let film = Film::new(&description.film).unwrap();
         render::render(&scene, &film, &job, &false.into(), |_| None);
         let image = film.develop();
@@ -193,7 +193,7 @@ mod tests {
     #[test]
     fn shown_paths_do_not_depend_on_longer_ones() {
         let (description, scene) = room();
-        let strategy = Named::Bdpt.plan().strategy(&description.integrator);
+        let strategy = Stage::BIDIRECTIONAL.strategy(&description.integrator);
         let limited = pyramid(&description, &scene, &job(strategy));
         let unlimited = pyramid(&description, &scene, &job(Strategy { max_depth: u32::MAX, ..strategy }));
         for technique in limited.techniques() {
@@ -218,7 +218,7 @@ mod tests {
             let mut description = load_str(&text, Path::new("room.xml"), None, &[], &Library::default()).unwrap().description;
             limit(&mut description, 4);
             let scene = Scene::new(&description).unwrap();
-            let job = Job { target: Target::Samples(64), ..job(Named::Bdpt.plan().strategy(&description.integrator)) };
+            let job = Job { target: Target::Samples(64), ..job(Stage::BIDIRECTIONAL.strategy(&description.integrator)) };
             let pyramid = pyramid(&description, &scene, &job);
             let effects = Effects::of(&description, &scene);
             for technique in pyramid.techniques() {

@@ -50,6 +50,26 @@ pub struct Effects {
 }
 
 impl Effects {
+    /// Of a scene with nothing in it.
+    pub const NONE: Self = Self {
+        area_lights: false,
+        environment: false,
+        dirac_lights: false,
+        diffuse: false,
+        glossy_reflection: false,
+        glossy_transmission: false,
+        delta_reflection: false,
+        delta_transmission: false,
+        refraction: false,
+        straight_transmission: false,
+        textures: false,
+        shading_normals: false,
+        finite_lens: false,
+        parallel_rays: false,
+        clipping: false,
+        hidden_emitters: false,
+    };
+
     /// Those of a scene, and of the description it was built from.
     pub fn of(description: &Description, scene: &Scene) -> Self {
         let mut effects = Self { hidden_emitters: description.integrator.hide_emitters, ..Self::default() };

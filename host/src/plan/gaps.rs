@@ -6,7 +6,7 @@
 
 use serde::Serialize;
 
-use super::{Named, Plan, effects::Effects};
+use super::{Stage, effects::Effects};
 
 /// A class of paths that is missing from the image.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -28,7 +28,7 @@ const MOST_BENDS: usize = 3;
 type Bends = Vec<bool>;
 
 /// What `plan` cannot find. Whether such a path also meets the scene's geometry is not asked: it is said of what light and surfaces allow.
-pub fn gaps(effects: &Effects, plan: &Plan, max_depth: Option<u32>) -> Vec<Gap> {
+pub fn gaps(effects: &Effects, plan: &Stage, max_depth: Option<u32>) -> Vec<Gap> {
     let mut found: Vec<Gap> = Vec::new();
     for (lights, landable) in [("area lights or the environment", true), ("point, spot or directional lights", false)] {
         if !(if landable { effects.landable_lights() } else { effects.dirac_lights }) {
@@ -50,7 +50,7 @@ pub fn gaps(effects: &Effects, plan: &Plan, max_depth: Option<u32>) -> Vec<Gap> 
 }
 
 /// Whether some technique of the plan can make a path with these bends.
-fn finds(effects: &Effects, plan: &Plan, landable: bool, bends: &[bool]) -> bool {
+fn finds(effects: &Effects, plan: &Stage, landable: bool, bends: &[bool]) -> bool {
     let open = |bend: Option<&bool>| bend.is_some_and(|&smooth| smooth);
     let uses = |effort: f64| effort > 0.0;
     // The light's own point is shown to the lens where the camera has a point, or the light a place.
@@ -114,7 +114,7 @@ fn what(effects: &Effects, bends: &[bool]) -> String {
 
 /// What would bring the class into the image.
 fn remedy(effects: &Effects, landable: bool, bends: &[bool]) -> String {
-    if finds(effects, &Named::Bdpt.plan(), landable, bends) {
+    if finds(effects, &Stage::BIDIRECTIONAL, landable, bends) {
         return "use every technique (--integrator bdpt)".to_owned();
     }
     "give the light an area (a small shape with an area emitter), or the camera a lens (thinlens), or the mirror or glass a little roughness"
@@ -124,9 +124,10 @@ fn remedy(effects: &Effects, landable: bool, bends: &[bool]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::plan::Named;
 
     fn classes(effects: Effects, plan: Named, depth: Option<u32>) -> Vec<String> {
-        gaps(&effects, &plan.plan(), depth).into_iter().map(|gap| gap.class).collect()
+        gaps(&effects, &plan.stage().unwrap(), depth).into_iter().map(|gap| gap.class).collect()
     }
 
     /// A point light over a glass ball on a floor, seen by a pinhole.
@@ -145,7 +146,7 @@ mod tests {
     fn a_point_lights_caustic_in_a_mirror_is_out_of_a_pinholes_reach() {
         assert_eq!(classes(point(), Named::Bdpt, None), ["L S+ E", "L S+ D+ S+ E"]);
         assert_eq!(classes(point(), Named::Bdpt, Some(3)), ["L S+ E"]);
-        let gaps = gaps(&point(), &Named::Auto.plan(), None);
+        let gaps = gaps(&point(), &Named::Bdpt.stage().unwrap(), None);
         assert!(gaps.iter().all(|gap| gap.remedy.contains("area emitter")));
     }
 
@@ -159,7 +160,7 @@ mod tests {
     #[test]
     fn a_plan_of_fewer_techniques_misses_more() {
         assert_eq!(classes(point(), Named::Path, None), ["L S+ E", "L S+ D+ E", "L S+ D+ S+ E"]);
-        assert!(gaps(&point(), &Named::Path.plan(), None)[1].remedy.contains("bdpt"));
+        assert!(gaps(&point(), &Named::Path.stage().unwrap(), None)[1].remedy.contains("bdpt"));
         let lamp = Effects { dirac_lights: false, area_lights: true, ..point() };
         assert_eq!(classes(lamp, Named::Light, None), ["L S+ E", "L D+ S+ E", "L S+ D+ S+ E"]);
     }

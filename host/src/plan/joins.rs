@@ -3,7 +3,7 @@
 use bidir_kernel::{Join, Technique};
 use serde::Serialize;
 
-use super::{Plan, effects::Effects};
+use super::{Stage, effects::Effects};
 
 /// What becomes of a kind of join.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -33,9 +33,6 @@ pub struct Verdict {
     pub why: String,
 }
 
-/// Every kind of join.
-pub const JOINS: [Join; 5] = [Join::LightHit, Join::NextEvent, Join::Connection, Join::LensSplat, Join::LensHit];
-
 /// As a plan's file spells it.
 pub fn name(join: Join) -> &'static str {
     match join {
@@ -62,8 +59,8 @@ fn by_name<S: serde::Serializer>(join: &Join, serializer: S) -> Result<S::Ok, S:
     serializer.serialize_str(name(*join))
 }
 
-/// What a plan comes to in a scene with these effects, with paths of up to `max_depth` segments (`None`: any).
-pub fn judge(effects: &Effects, plan: &Plan, max_depth: Option<u32>) -> Vec<Verdict> {
+/// What a plan's stage comes to in a scene with these effects, with paths of up to `max_depth` segments (`None`: any).
+pub fn judge(effects: &Effects, plan: &Stage, max_depth: Option<u32>) -> Vec<Verdict> {
     let verdict = |join| {
         let effort = plan.effort(join);
         let (state, why) = match can(effects, max_depth, join) {
@@ -73,7 +70,7 @@ pub fn judge(effects: &Effects, plan: &Plan, max_depth: Option<u32>) -> Vec<Verd
         };
         Verdict { join, techniques: techniques(join), state, effort, why }
     };
-    JOINS.into_iter().map(verdict).collect()
+    Join::ALL.into_iter().map(verdict).collect()
 }
 
 /// Whether some path of the scene can be made so: what speaks for it, or what rules it out.
@@ -115,6 +112,11 @@ fn can(effects: &Effects, max_depth: Option<u32>, join: Join) -> Result<&'static
     }
 }
 
+/// Whether a kind of join can make any path in a scene with these effects.
+pub fn possible(effects: &Effects, max_depth: Option<u32>, join: Join) -> bool {
+    can(effects, max_depth, join).is_ok()
+}
+
 /// Whether one technique can make a path in a scene with these effects.
 pub fn exists(effects: &Effects, technique: Technique) -> bool {
     let length = technique.length();
@@ -131,19 +133,6 @@ pub fn exists(effects: &Effects, technique: Technique) -> bool {
             Join::LensSplat => effects.smooth(),
             _ => effects.smooth() || effects.delta(),
         },
-    }
-}
-
-impl Plan {
-    /// How often it samples a kind of join.
-    pub fn effort(&self, join: Join) -> f64 {
-        match join {
-            Join::LightHit => self.light_hit,
-            Join::NextEvent => self.next_event,
-            Join::Connection => self.connection,
-            Join::LensSplat => self.lens_splat,
-            Join::LensHit => self.lens_hit,
-        }
     }
 }
 
@@ -173,7 +162,7 @@ mod tests {
     };
 
     fn impossible(effects: Effects, depth: Option<u32>) -> Vec<Join> {
-        let verdicts = judge(&effects, &Named::Bdpt.plan(), depth);
+        let verdicts = judge(&effects, &Named::Bdpt.stage().unwrap(), depth);
         verdicts.into_iter().filter(|v| v.state == State::Impossible).map(|v| v.join).collect()
     }
 
@@ -187,12 +176,12 @@ mod tests {
         let hidden = Effects { hidden_emitters: true, ..mirrors };
         assert_eq!(impossible(hidden, None), [Join::NextEvent, Join::Connection, Join::LensSplat, Join::LensHit]);
         assert_eq!(impossible(ROOM, Some(2)), [Join::Connection, Join::LensHit]);
-        assert_eq!(impossible(Effects { area_lights: false, ..ROOM }, None), JOINS);
+        assert_eq!(impossible(Effects { area_lights: false, ..ROOM }, None), Join::ALL);
     }
 
     #[test]
     fn joins_that_a_plan_leaves_out_are_off() {
-        let verdicts = judge(&ROOM, &Named::Path.plan(), None);
+        let verdicts = judge(&ROOM, &Named::Path.stage().unwrap(), None);
         let states: Vec<_> = verdicts.iter().map(|v| v.state).collect();
         assert_eq!(states, [State::On, State::On, State::Off, State::Off, State::Impossible]);
     }

@@ -3,8 +3,10 @@
 //! A pass is a whole number of samples for every pixel. What is decided while rendering (to stop, to report) is decided between passes,
 //! so that an image depends on scene, seed, samples and plan alone.
 
+mod director;
 mod numbers;
 mod passes;
+mod pilot;
 
 use std::{
     sync::atomic::{AtomicBool, Ordering},
@@ -22,6 +24,7 @@ use crate::{
     },
 };
 
+pub use director::{Always, Auto, Director, Given, Leg};
 pub use numbers::Numbers;
 pub use passes::pass_end;
 
@@ -83,21 +86,33 @@ pub struct Status {
 
 /// Renders onto an empty `film`. After each pass, `report` is told where the render stands and answers the estimated error,
 /// where it knows one; raising `interrupt` ends the render after the sample under way.
-pub fn render<S: Store>(
+pub fn render<S: Store>(scene: &Scene, film: &S, job: &Job, interrupt: &AtomicBool, report: impl FnMut(&Status) -> Option<f64>) -> Status {
+    directed(scene, film, job, &mut Always, interrupt, report)
+}
+
+/// [`render`] with a director, who says between passes what is sampled next.
+pub fn directed<S: Store>(
     scene: &Scene,
     film: &S,
     job: &Job,
+    director: &mut impl Director,
     interrupt: &AtomicBool,
     mut report: impl FnMut(&Status) -> Option<f64>,
 ) -> Status {
     let start = Instant::now();
     let mut status = Status::default();
+    // Seconds per sample of the last pass.
+    let mut pace = None;
     let last = match job.target {
         Target::Samples(samples) => samples,
         Target::Time(_) | Target::Error(_) => u32::MAX,
     };
     while status.samples < last {
-        let end = pass_end(status.samples).min(last).min(affordable(&status, job.target));
+        let leg = director.next(scene, job, &status);
+        status.elapsed = start.elapsed();
+        let job = &Job { strategy: leg.strategy, ..*job };
+        let end = pass_end(status.samples).min(last).min(leg.end).min(affordable(&status, job.target, pace));
+        let before = (status.samples, status.elapsed);
         let Some(claimed) = run(scene, film, job, end, Some(interrupt), &mut status) else {
             status.failed = true;
             return status;
@@ -116,10 +131,11 @@ pub fn render<S: Store>(
             status.samples = end;
         }
         status.elapsed = start.elapsed();
+        pace = Some((status.elapsed - before.1).as_secs_f64() / f64::from((status.samples - before.0).max(1)));
         let error = report(&status);
         let done = match job.target {
             Target::Samples(_) => false,
-            Target::Time(limit) => status.elapsed.as_secs_f64() * (1.0 + 0.5 / f64::from(status.samples)) >= limit.as_secs_f64(),
+            Target::Time(limit) => status.elapsed.as_secs_f64() + 0.5 * pace.unwrap_or(0.0) >= limit.as_secs_f64(),
             Target::Error(goal) => error.is_some_and(|error| error <= goal),
         };
         if done || status.interrupted {
@@ -129,12 +145,11 @@ pub fn render<S: Store>(
     status
 }
 
-/// How many samples will be on the film when the time is up, at the pace so far; at least one more.
-fn affordable(status: &Status, target: Target) -> u32 {
-    match target {
-        Target::Time(limit) if status.samples > 0 => {
-            let per_sample = status.elapsed.as_secs_f64() / f64::from(status.samples);
-            let more = (limit.saturating_sub(status.elapsed).as_secs_f64() / per_sample) as u32;
+/// How many samples will be on the film when the time is up, at the last pass's pace; at least one more.
+fn affordable(status: &Status, target: Target, pace: Option<f64>) -> u32 {
+    match (target, pace) {
+        (Target::Time(limit), Some(pace)) => {
+            let more = (limit.saturating_sub(status.elapsed).as_secs_f64() / pace) as u32;
             status.samples.saturating_add(more.max(1))
         }
         _ => u32::MAX,
@@ -237,7 +252,7 @@ fn work<S: Store, N: Source>(scene: &Scene, film: &S, job: &Job, end: u32, stop:
 }
 
 /// Storage for one walk's vertices: enough for the longest path that is joined.
-fn storage<'s>(strategy: &Strategy) -> Vec<Option<WalkVertex<'s, View<'s>>>> {
+fn storage<'s, R>(strategy: &Strategy) -> Vec<Option<WalkVertex<'s, View<'s>, R>>> {
     let length = strategy.max_depth.min(LONGEST_JOINED).saturating_sub(1);
     (0..length).map(|_| None).collect()
 }

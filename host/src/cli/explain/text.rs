@@ -5,6 +5,7 @@ use crate::{
     plan::{
         contents::{Camera, Contents, Groups, Lights, Materials, Shapes},
         joins::State,
+        words,
     },
     render::LONGEST_JOINED,
 };
@@ -19,7 +20,7 @@ pub(super) fn of(report: &Report) -> String {
     lines.push(entry("present", &or_none(names(present))));
     lines.push(entry("absent", &or_none(names(absent))));
 
-    section(&mut lines, "Techniques (auto runs every one until there is a planner)");
+    section(&mut lines, "Techniques");
     for verdict in &report.techniques {
         let state = match verdict.state {
             State::On => "on",
@@ -28,6 +29,11 @@ pub(super) fn of(report: &Report) -> String {
         };
         let name = crate::plan::joins::name(verdict.join).replace('_', " ");
         lines.push(format!("  {name:<11} {:<13} {state:<11} {}", verdict.techniques, verdict.why));
+    }
+
+    if let Some(choice) = &report.choice {
+        section(&mut lines, "The plan");
+        lines.extend(words::card(choice).into_iter().map(|line| format!("  {line}")));
     }
 
     section(&mut lines, "Paths that no technique finds");

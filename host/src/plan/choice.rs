@@ -1,0 +1,215 @@
+//! The choice of a plan: error times time, both as a pilot measured them, for every plan that the scene leaves open.
+
+use bidir_kernel::{Join, Techniques};
+use serde::Serialize;
+
+use super::{Stage, effects::Effects, evidence::Evidence, joins::possible};
+
+/// Light paths per camera path that are tried.
+const WALKS: [f64; 5] = [0.0, 0.25, 0.5, 1.0, 2.0];
+
+/// Connections per light path that are tried.
+const CONNECTIONS: [f64; 4] = [0.0, 0.25, 0.5, 1.0];
+
+/// Light points per vertex that are tried.
+const NEXT_EVENTS: [f64; 3] = [0.0, 1.0, 2.0];
+
+/// A plan that is under way is left for one that is so much better.
+const HYSTERESIS: f64 = 1.03;
+
+/// Measured CPU nanoseconds.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Costs {
+    /// Of a camera path with one light point per vertex.
+    pub camera_path: f64,
+    /// Of one light point more for each of its vertices.
+    pub next_event: f64,
+    /// Of a light path whose vertices are shown to the lens.
+    pub light_path: f64,
+    /// Of connecting all vertices of a camera path with all of a light path.
+    pub connections: f64,
+}
+
+impl Costs {
+    /// Of a sample.
+    pub fn of(&self, stage: &Stage) -> f64 {
+        let techniques = stage.techniques();
+        let camera = if techniques.camera_walk() { self.camera_path + (stage.next_event - 1.0) * self.next_event } else { 0.0 };
+        camera.max(0.0) + techniques.light_walks() * self.light_path + stage.connection * self.connections
+    }
+}
+
+/// A plan that was looked at.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Candidate {
+    /// Its counts.
+    pub stage: Stage,
+    /// relMSE of one sample per pixel, about; `None` where the plan misses what the pilot saw.
+    pub error: Option<f64>,
+    /// CPU nanoseconds of a sample.
+    pub cost: f64,
+}
+
+impl Candidate {
+    /// 1 / (error · cost); 0 where it misses something.
+    pub fn efficiency(&self) -> f64 {
+        self.error.map_or(0.0, |error| 1.0 / (error.max(f64::MIN_POSITIVE) * self.cost.max(f64::MIN_POSITIVE)))
+    }
+}
+
+/// What was chosen, and from what.
+#[derive(Clone, Debug, Serialize)]
+pub struct Choice {
+    /// The plan.
+    pub chosen: Candidate,
+    /// Every plan that was looked at, the best one first.
+    pub candidates: Vec<Candidate>,
+    /// What the pilot measured.
+    pub costs: Costs,
+    /// Camera paths of the pilot.
+    pub camera_paths: usize,
+    /// What each kind of join costs and saves.
+    pub joins: Vec<Worth>,
+}
+
+/// What a kind of join costs and saves.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Worth {
+    /// Which join, as a plan's file spells it.
+    pub join: &'static str,
+    /// Its part of the time of a sample.
+    pub cost: f64,
+    /// How many times the error would be without it; `None` where something would be missing.
+    pub error_without: Option<f64>,
+}
+
+/// The plans that a scene leaves open: counts of joins that cannot be made there are 0.
+pub fn candidates(effects: &Effects, max_depth: Option<u32>) -> Vec<Stage> {
+    let can = |join, count: f64| if possible(effects, max_depth, join) { count } else { 0.0 };
+    let mut all: Vec<Stage> = Vec::new();
+    let mut take = |light_hit: f64, next_event: f64, walks: f64, connection: f64| {
+        let stage = Stage::of(&Techniques {
+            light_hit: can(Join::LightHit, light_hit),
+            next_event: can(Join::NextEvent, next_event),
+            connection: can(Join::Connection, connection * walks),
+            lens_splat: can(Join::LensSplat, walks),
+            lens_hit: can(Join::LensHit, walks),
+        });
+        let techniques = stage.techniques();
+        if (techniques.light_walk() || techniques.camera_walk()) && !all.contains(&stage) {
+            all.push(stage);
+        }
+    };
+    for next_event in NEXT_EVENTS {
+        for walks in WALKS {
+            for connection in CONNECTIONS {
+                // What two light walks of one camera path have in common the pilot cannot see.
+                take(1.0, next_event, walks, if walks <= 1.0 { connection } else { 0.0 });
+            }
+        }
+    }
+    take(0.0, 0.0, 1.0, 0.0);
+    all
+}
+
+/// The best of the candidates, by what the pilot saw and what it took; the stage under way, unless another one is clearly better.
+pub fn choose(stages: &[Stage], evidence: &Evidence, costs: &Costs, under_way: Option<&Stage>) -> Option<Choice> {
+    let look = |stages: &[Stage]| -> Vec<Candidate> {
+        let errors = evidence.errors(stages);
+        let candidate = |(stage, error): (&Stage, f64)| Candidate {
+            stage: *stage,
+            error: error.is_finite().then_some(error.max(0.0)),
+            cost: costs.of(stage),
+        };
+        stages.iter().zip(errors).map(candidate).collect()
+    };
+    let mut all = look(stages);
+    all.sort_by(|a, b| b.efficiency().total_cmp(&a.efficiency()));
+    let best = *all.first()?;
+    let same = |candidate: &&Candidate| under_way.is_some_and(|stage| stage.techniques() == candidate.stage.techniques());
+    let chosen = match all.iter().find(same) {
+        Some(current) if current.efficiency() * HYSTERESIS >= best.efficiency() => *current,
+        _ => best,
+    };
+    let used: Vec<Join> = Join::ALL.into_iter().filter(|&join| chosen.stage.effort(join) > 0.0).collect();
+    let without: Vec<Stage> = used.iter().map(|&join| chosen.stage.without(join)).collect();
+    let joins = used.iter().zip(look(&without)).map(|(&join, left)| Worth {
+        join: super::joins::name(join),
+        cost: (1.0 - left.cost / chosen.cost).max(0.0),
+        error_without: left.error.zip(chosen.error).map(|(without, with)| without / with.max(f64::MIN_POSITIVE)),
+    });
+    Some(Choice { chosen, joins: joins.collect(), costs: *costs, camera_paths: 2 * evidence.pairs(), candidates: all })
+}
+
+impl Stage {
+    /// The same without a kind of join.
+    fn without(&self, join: Join) -> Self {
+        let mut other = *self;
+        *match join {
+            Join::LightHit => &mut other.light_hit,
+            Join::NextEvent => &mut other.next_event,
+            Join::Connection => &mut other.connection,
+            Join::LensSplat => &mut other.lens_splat,
+            Join::LensHit => &mut other.lens_hit,
+        } = 0.0;
+        other
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use bidir_kernel::Technique;
+
+    use super::*;
+    use crate::plan::evidence::Brought;
+
+    const ROOM: Effects = Effects { area_lights: true, diffuse: true, ..Effects::NONE };
+
+    #[test]
+    fn what_a_scene_cannot_have_is_not_tried() {
+        assert!(candidates(&ROOM, None).iter().all(|stage| stage.lens_hit == 0.0 && stage.light_hit <= 1.0));
+        assert!(candidates(&ROOM, Some(2)).iter().all(|stage| stage.connection == 0.0));
+        let mirrors = Effects { diffuse: false, delta_reflection: true, hidden_emitters: true, ..ROOM };
+        assert_eq!(candidates(&mirrors, None), [Stage::of(&Techniques::PATH.only(Join::LightHit))]);
+        assert!(candidates(&Effects::NONE, None).is_empty());
+        assert!(candidates(&ROOM, None).iter().all(|stage| stage.connection <= stage.lens_splat));
+    }
+
+    fn evidence(shares: [f64; 5]) -> Evidence {
+        let mut evidence = Evidence::new(vec![1.0], &Techniques { next_event: 2.0, ..Techniques::BIDIRECTIONAL });
+        for i in 0..64 {
+            if i % 8 == 0 {
+                evidence.add(Brought { value: 1.0, technique: Technique { s: 1, t: 3 }, shares });
+            }
+            evidence.end_pair(0, evidence.len());
+        }
+        evidence
+    }
+
+    const COSTS: Costs = Costs { camera_path: 1000.0, next_event: 300.0, light_path: 1500.0, connections: 2000.0 };
+
+    #[test]
+    fn light_paths_run_where_they_pay() {
+        let stages = candidates(&ROOM, None);
+        let choose = |shares| choose(&stages, &evidence(shares), &COSTS, None).unwrap().chosen.stage;
+        // What the camera finds as well as anything.
+        assert_eq!(choose([0.2, 0.78, 0.01, 0.01, 0.0]).lens_splat, 0.0);
+        // What it hardly ever finds.
+        let found = choose([0.001, 0.0, 0.0, 0.999, 0.0]);
+        assert!(found.lens_splat > 0.0 && found.connection == 0.0, "{found:?}");
+        let connected = choose([0.001, 0.0, 0.989, 0.01, 0.0]);
+        assert!(connected.connection > 0.0, "{connected:?}");
+    }
+
+    #[test]
+    fn a_plan_under_way_stays_unless_another_is_clearly_better() {
+        let stages = candidates(&ROOM, None);
+        let evidence = evidence([0.2, 0.78, 0.01, 0.01, 0.0]);
+        let best = choose(&stages, &evidence, &COSTS, None).unwrap();
+        let second = best.candidates[1].stage;
+        let stays = best.candidates[1].efficiency() * HYSTERESIS >= best.chosen.efficiency();
+        let again = choose(&stages, &evidence, &COSTS, Some(&second)).unwrap().chosen.stage;
+        assert_eq!(again == second, stays);
+        assert_eq!(choose(&stages, &evidence, &COSTS, Some(&best.candidates[20].stage)).unwrap().chosen.stage, best.chosen.stage);
+    }
+}

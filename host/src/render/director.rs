@@ -1,0 +1,179 @@
+//! Who says what is sampled next: a plan that is given, or one that a pilot finds and looks after.
+
+use std::time::{Duration, Instant};
+
+use bidir_kernel::Strategy;
+
+use super::{Job, Status, Target, pilot::Pilot};
+use crate::{
+    plan::{
+        Plan, Stage,
+        choice::{Choice, candidates, choose},
+        effects::Effects,
+    },
+    scene::{
+        Scene,
+        description::{Description, Integrator},
+    },
+};
+
+/// What comes next.
+#[derive(Clone, Copy, Debug)]
+pub struct Leg {
+    /// How samples are taken.
+    pub strategy: Strategy,
+    /// The first sample of every pixel that is not taken so.
+    pub end: u32,
+}
+
+/// Says between passes what comes next.
+pub trait Director {
+    /// From the sample on that stands in `status`.
+    fn next(&mut self, scene: &Scene, job: &Job, status: &Status) -> Leg;
+}
+
+/// The job's own strategy from beginning to end.
+#[derive(Clone, Copy, Debug)]
+pub struct Always;
+
+impl Director for Always {
+    fn next(&mut self, _: &Scene, job: &Job, _: &Status) -> Leg {
+        Leg { strategy: job.strategy, end: u32::MAX }
+    }
+}
+
+/// A plan that is given.
+#[derive(Clone, Debug)]
+pub struct Given {
+    /// The plan.
+    pub plan: Plan,
+    /// How far paths go.
+    pub integrator: Integrator,
+}
+
+impl Director for Given {
+    fn next(&mut self, _: &Scene, job: &Job, status: &Status) -> Leg {
+        match self.plan.at(status.samples) {
+            Some((stage, end)) => Leg { strategy: stage.strategy(&self.integrator), end },
+            None => Leg { strategy: job.strategy, end: u32::MAX },
+        }
+    }
+}
+
+/// The share of a render's time that pilots may take.
+const SHARE: f64 = 0.02;
+
+/// Pixels that the first pilot looks at, at least and at most.
+const FIRST: [f64; 2] = [256.0, 16_384.0];
+
+/// About how many camera paths one of the pilot's pixels costs.
+const PATHS_PER_PIXEL: f64 = 14.0;
+
+/// Pilots come again when a render has taken so many times as long as when the last one came.
+const AGAIN: f64 = 4.0;
+
+/// How often pilots come again.
+const MOST_AGAIN: u32 = 5;
+
+/// A plan that a pilot finds before the first sample, and looks after as the render goes on.
+#[derive(Debug)]
+pub struct Auto {
+    stages: Vec<Stage>,
+    pilot: Pilot,
+    plan: Plan,
+    choice: Option<Choice>,
+    integrator: Integrator,
+    /// Pixels of the image.
+    pixels: f64,
+    /// When the next pilot comes, in time that the render took.
+    again: Duration,
+    left: u32,
+    /// Wall-clock time of all pilots.
+    pub elapsed: Duration,
+}
+
+impl Auto {
+    /// For a scene with these effects.
+    pub fn new(description: &Description, effects: &Effects) -> Self {
+        let crop = description.film.crop;
+        let max_depth = description.integrator.max_depth;
+        Self {
+            stages: candidates(effects, max_depth),
+            pilot: Pilot::new(&description.film, effects, max_depth),
+            plan: Plan { stages: Vec::new() },
+            choice: None,
+            integrator: description.integrator.clone(),
+            pixels: f64::from(crop.width) * f64::from(crop.height),
+            again: Duration::MAX,
+            left: MOST_AGAIN,
+            elapsed: Duration::ZERO,
+        }
+    }
+
+    /// The plan so far: what `--plan` repeats.
+    pub fn plan(&self) -> &Plan {
+        &self.plan
+    }
+
+    /// The last choice, if there was one to make.
+    pub fn choice(&self) -> Option<&Choice> {
+        self.choice.as_ref()
+    }
+
+    /// Looks, and chooses; `from` is the first sample of the stage that may begin.
+    pub fn look(&mut self, scene: &Scene, job: &Job, time: Duration, pixels: u64, from: u32) {
+        let start = Instant::now();
+        let under_way = self.plan.last().copied();
+        if self.stages.len() > 1 {
+            self.pilot.look(scene, job, time, pixels);
+            self.choice = choose(&self.stages, self.pilot.evidence(), &self.pilot.costs(), under_way.as_ref());
+        }
+        let chosen = match &self.choice {
+            Some(choice) if choice.chosen.error.is_some() => choice.chosen.stage,
+            // Nothing was seen, or there is no choice.
+            _ => {
+                self.stages.iter().copied().max_by(|a, b| breadth(a).total_cmp(&breadth(b))).unwrap_or(Stage::of(&job.strategy.techniques))
+            }
+        };
+        if under_way.is_none_or(|stage| stage.techniques() != chosen.techniques()) {
+            self.plan.stages.push(Stage { from, ..chosen });
+        }
+        self.elapsed += start.elapsed();
+    }
+
+    /// How long the first pilot may take on each thread, and how many pixels it may look at.
+    fn first(&self, target: Target) -> (Duration, u64) {
+        let some = |pixels: f64| pixels.clamp(FIRST[0], FIRST[1]) as u64;
+        match target {
+            Target::Samples(samples) => (Duration::MAX, some(SHARE * f64::from(samples) * self.pixels / PATHS_PER_PIXEL)),
+            Target::Time(time) => (time.mul_f64(SHARE), FIRST[1] as u64),
+            Target::Error(_) => (Duration::MAX, 4 * FIRST[0] as u64),
+        }
+    }
+}
+
+/// How many ways to make a path a stage has: all of them once, before more of some.
+fn breadth(stage: &Stage) -> f64 {
+    let techniques = stage.techniques();
+    [techniques.light_hit, techniques.next_event, techniques.connection, techniques.lens_splat, techniques.lens_hit]
+        .map(|count| count.min(1.0))
+        .iter()
+        .sum()
+}
+
+impl Director for Auto {
+    fn next(&mut self, scene: &Scene, job: &Job, status: &Status) -> Leg {
+        if self.plan.stages.is_empty() {
+            let (time, pixels) = self.first(job.target);
+            self.look(scene, job, time, pixels, status.samples);
+            self.again = self.elapsed.mul_f64(2.0 / SHARE);
+        } else if status.elapsed >= self.again && self.left > 0 && self.stages.len() > 1 {
+            self.left -= 1;
+            let time = status.elapsed.mul_f64(SHARE).saturating_sub(self.elapsed);
+            self.look(scene, job, time, u64::MAX / 2, status.samples);
+            self.again = status.elapsed.mul_f64(AGAIN);
+        }
+        let stage = self.plan.last().copied().unwrap_or(Stage::of(&job.strategy.techniques));
+        Leg { strategy: stage.strategy(&self.integrator), end: u32::MAX }
+    }
+}

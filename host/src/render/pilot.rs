@@ -1,0 +1,318 @@
+//! The pilot: a few samples all over the image, by every technique, that tell plans apart. Nothing of them comes onto the film.
+
+use std::time::Duration;
+
+use bidir_kernel::{ByJoin, Contribution, Heuristic, Join, Rivals, Sampler, Strategy, Techniques, Together, Vec2, Walk, sample};
+use cpu_time::ThreadTime;
+
+use super::{
+    Job,
+    numbers::{Apart, Numbers, Sobol, Source},
+    storage,
+};
+use crate::{
+    film::{Exposure, Film, Store, TileBuffer},
+    plan::{
+        choice::Costs,
+        effects::Effects,
+        evidence::{Brought, Evidence, shares},
+        joins::possible,
+    },
+    scene::{
+        Scene,
+        description::{Crop, FilmSettings},
+        view::View,
+    },
+};
+
+/// Pixels that one round looks at.
+const ROUND: u32 = 128;
+
+/// About how many blocks the image has.
+const BLOCKS: f64 = 256.0;
+
+/// The most contributions that are kept, all threads together.
+const MOST_KEPT: usize = 1 << 22;
+
+/// The film that costs are measured with is no larger than this, in pixels.
+const FILM: u32 = 64;
+
+/// What a pilot has seen so far.
+#[derive(Debug)]
+pub struct Pilot {
+    evidence: Evidence,
+    spent: Spent,
+    blocks: Blocks,
+    techniques: Techniques,
+    small: FilmSettings,
+    rounds: u64,
+    /// CPU time of all threads.
+    pub cpu: Duration,
+}
+
+/// CPU time of each kind of sample, and how many there were.
+#[derive(Clone, Copy, Debug, Default)]
+struct Spent {
+    nanoseconds: [f64; 4],
+    samples: f64,
+}
+
+/// What one thread has seen.
+struct Part {
+    evidence: Evidence,
+    spent: Spent,
+    cpu: Duration,
+}
+
+/// What costs are told from.
+const PATH: usize = 0;
+const TWICE: usize = 1;
+const LIGHT: usize = 2;
+const ALL: usize = 3;
+
+/// The image in blocks.
+#[derive(Clone, Copy, Debug)]
+struct Blocks {
+    crop: Crop,
+    edge: u32,
+    columns: u32,
+}
+
+impl Blocks {
+    fn new(crop: Crop) -> Self {
+        let pixels = f64::from(crop.width) * f64::from(crop.height);
+        let edge = (pixels / BLOCKS).sqrt().ceil().max(1.0) as u32;
+        Self { crop, edge, columns: crop.width.div_ceil(edge) }
+    }
+
+    fn sizes(&self) -> Vec<f64> {
+        let rows = self.crop.height.div_ceil(self.edge);
+        let length = |index: u32, whole: u32| f64::from(self.edge.min(whole - index * self.edge));
+        let of = |row, column| length(row, self.crop.height) * length(column, self.crop.width);
+        (0..rows).flat_map(|row| (0..self.columns).map(move |column| (row, column))).map(|(row, column)| of(row, column)).collect()
+    }
+
+    /// The block of a raster position, if it is within the window.
+    fn at(&self, raster: Vec2) -> Option<u32> {
+        let (x, y) = (f64::from(raster.x) - f64::from(self.crop.x), f64::from(raster.y) - f64::from(self.crop.y));
+        let inside = x >= 0.0 && y >= 0.0 && x < f64::from(self.crop.width) && y < f64::from(self.crop.height);
+        inside.then(|| y as u32 / self.edge * self.columns + x as u32 / self.edge)
+    }
+}
+
+impl Pilot {
+    /// Nothing seen yet. Techniques that cannot make a path in the scene are left out.
+    pub fn new(settings: &FilmSettings, effects: &Effects, max_depth: Option<u32>) -> Self {
+        let one = |join| if possible(effects, max_depth, join) { 1.0 } else { 0.0 };
+        let techniques = Techniques {
+            light_hit: one(Join::LightHit),
+            // Two show what they have in common.
+            next_event: 2.0 * one(Join::NextEvent),
+            connection: one(Join::Connection),
+            lens_splat: one(Join::LensSplat),
+            lens_hit: one(Join::LensHit),
+        };
+        let blocks = Blocks::new(settings.crop);
+        let Crop { x, y, width, height } = settings.crop;
+        let crop = Crop { x, y, width: width.min(FILM), height: height.min(FILM) };
+        let small = FilmSettings { crop, ..settings.clone() };
+        Self {
+            evidence: Evidence::new(blocks.sizes(), &techniques),
+            spent: Spent::default(),
+            blocks,
+            techniques,
+            small,
+            rounds: 0,
+            cpu: Duration::ZERO,
+        }
+    }
+
+    /// What was seen.
+    pub fn evidence(&self) -> &Evidence {
+        &self.evidence
+    }
+
+    /// Looks on, on all threads, until each has spent that much time or all together have looked at that many pixels; a round at least.
+    /// `strategy` is any of the scene's: how deep paths go is taken from it.
+    pub fn look(&mut self, scene: &Scene, job: &Job, time: Duration, pixels: u64) {
+        let threads = job.threads.max(1) as u64;
+        let rounds = pixels.div_ceil(u64::from(ROUND)).div_ceil(threads).max(1);
+        let first = self.rounds;
+        let this = &*self;
+        let parts: Vec<_> = std::thread::scope(|scope| {
+            let look = |thread| {
+                let rounds = (0..rounds).map(move |i| first + i * threads + thread);
+                move || match job.numbers {
+                    Numbers::Sobol => this.part::<Sobol>(scene, job, rounds, time),
+                    Numbers::Independent => this.part::<Apart>(scene, job, rounds, time),
+                }
+            };
+            let workers: Vec<_> = (0..threads).map(|thread| scope.spawn(look(thread))).collect();
+            workers.into_iter().filter_map(|worker| worker.join().ok().flatten()).collect()
+        });
+        self.rounds += rounds * threads;
+        for Part { evidence, spent, cpu } in parts {
+            self.evidence.merge(evidence);
+            for (all, one) in self.spent.nanoseconds.iter_mut().zip(spent.nanoseconds) {
+                *all += one;
+            }
+            self.spent.samples += spent.samples;
+            self.cpu += cpu;
+        }
+    }
+
+    /// One thread's part; `None` where a plugin broke off, which the render will meet as well.
+    fn part<N: Source>(&self, scene: &Scene, job: &Job, rounds: impl Iterator<Item = u64>, time: Duration) -> Option<Part> {
+        let clock = ThreadTime::now();
+        let view = View::new(scene, job.strictness);
+        let strategy = Strategy { techniques: self.techniques, heuristic: Heuristic::Balance, ..job.strategy };
+        let (mut camera_path, mut light_path) = (storage(&strategy), storage(&strategy));
+        let mut kept =
+            Kept { evidence: Evidence::new(self.blocks.sizes(), &self.techniques), blocks: self.blocks, weighed: (1.0, ByJoin::NONE) };
+        let mut timing = Timing { spent: Spent::default(), film: Film::new(&self.small).ok()?, crop: self.small.crop };
+        for round in rounds {
+            view.sandbox().begin_tile(round);
+            let places: Vec<_> = (0..ROUND).map(|i| self.place(round * u64::from(ROUND) + u64::from(i))).collect();
+            // The render's own numbers, of a seed that is not the render's.
+            let halves = [0, 1].map(|half| N::new(!job.seed, 2 * round as u32 + half));
+            for &place in &places {
+                let mut middle = 0;
+                for source in &halves {
+                    middle = kept.evidence.len();
+                    let (mut numbers, raster) = begun(source, place);
+                    sample(&view, &strategy, &mut numbers, raster, &mut camera_path, &mut light_path, &mut kept);
+                }
+                let block = self.blocks.at(Vec2::new(place[0] as f32 + 0.5, place[1] as f32 + 0.5)).unwrap_or(0);
+                kept.evidence.end_pair(block, middle);
+            }
+            timing.round(&view, &strategy, &places, &halves[0]);
+            if view.sandbox().faulted() {
+                return None;
+            }
+            if clock.elapsed() >= time || kept.evidence.len() > MOST_KEPT / job.threads.max(1) {
+                break;
+            }
+        }
+        Some(Part { evidence: kept.evidence, spent: timing.spent, cpu: clock.elapsed() })
+    }
+
+    /// The pixel that is looked at in turn: everywhere alike, by the additive recurrence of the plastic number (Roberts 2018).
+    fn place(&self, turn: u64) -> [u32; 2] {
+        let Crop { x, y, width, height } = self.blocks.crop;
+        let at = |step: f64, length: u32| ((0.5 + step * turn as f64).fract() * f64::from(length)) as u32;
+        [x + at(0.754_877_666_246_692_7, width), y + at(0.569_840_290_998_053_3, height)]
+    }
+
+    /// What samples cost.
+    pub fn costs(&self) -> Costs {
+        let each = self.spent.nanoseconds.map(|ns| ns / self.spent.samples.max(1.0));
+        Costs {
+            camera_path: each[PATH],
+            next_event: (each[TWICE] - each[PATH]).max(0.0),
+            light_path: each[LIGHT],
+            connections: (each[ALL] - each[PATH] - each[LIGHT]).max(0.0),
+        }
+    }
+}
+
+/// Takes what the pilot's samples bring.
+struct Kept {
+    evidence: Evidence,
+    blocks: Blocks,
+    /// How the next contribution was weighed.
+    weighed: (f64, ByJoin),
+}
+
+impl Kept {
+    fn brought(&self, contribution: &Contribution) -> Option<Brought> {
+        let Contribution { value, weight, technique } = *contribution;
+        let value = f64::from(value.mean()) * f64::from(weight);
+        let shares = shares(technique, self.weighed.0, |join| self.weighed.1.of(join));
+        let whole = value.is_finite() && shares.iter().all(|share| share.is_finite());
+        whole.then_some(Brought { value, technique, shares })
+    }
+}
+
+impl bidir_kernel::Film for Kept {
+    type Rivals = ByJoin;
+
+    fn weighed(&mut self, own: f64, others: ByJoin) {
+        self.weighed = (own, others);
+    }
+
+    fn add(&mut self, contribution: Contribution) {
+        if let Some(brought) = self.brought(&contribution) {
+            self.evidence.add(brought);
+        }
+    }
+
+    fn splat(&mut self, raster: Vec2, contribution: Contribution) {
+        if let (Some(brought), Some(block)) = (self.brought(&contribution), self.blocks.at(raster)) {
+            self.evidence.splat(block, brought);
+        }
+    }
+}
+
+/// The numbers of a pixel, and where in it a camera path begins.
+fn begun<N: Source>(source: &N, [x, y]: [u32; 2]) -> (N::OfPixel<'_>, Vec2) {
+    let mut numbers = source.pixel(u64::from(y) << 32 | u64::from(x));
+    numbers.seek(Walk::Camera, 0);
+    let [dx, dy] = numbers.next_pair();
+    (numbers, Vec2::new(x as f32 + dx, y as f32 + dy))
+}
+
+/// Measures what samples cost, as a render takes them.
+struct Timing {
+    spent: Spent,
+    film: Film,
+    /// The film's.
+    crop: Crop,
+}
+
+impl Timing {
+    /// Samples these pixels in each of the ways that costs are told from.
+    fn round<N: Source>(&mut self, view: &View, all: &Strategy, places: &[[u32; 2]], source: &N) {
+        let Techniques { next_event, lens_splat, lens_hit, .. } = all.techniques;
+        let once = Techniques { next_event: 0.5 * next_event, ..all.techniques };
+        let twice = Techniques { connection: 0.0, lens_splat: 0.0, lens_hit: 0.0, ..all.techniques };
+        let path = Techniques { next_event: once.next_event, ..twice };
+        let light = Techniques { lens_splat, lens_hit, ..Techniques::NONE };
+        let ways = [path, twice, light, once];
+        for (techniques, nanoseconds) in ways.into_iter().zip(&mut self.spent.nanoseconds) {
+            let strategy = Strategy { techniques, ..*all };
+            let (mut camera_path, mut light_path) = (storage(&strategy), storage(&strategy));
+            let clock = ThreadTime::now();
+            let Some(mut buffer) = self.film.claim(u32::MAX) else { return };
+            for &place in places {
+                let (mut numbers, raster) = begun(source, place);
+                buffer.begin(raster);
+                let mut film = Within { buffer: &mut buffer, crop: self.crop };
+                sample(view, &strategy, &mut numbers, raster, &mut camera_path, &mut light_path, &mut film);
+                buffer.end();
+            }
+            self.film.commit(buffer);
+            *nanoseconds += clock.elapsed().as_nanos() as f64;
+        }
+        self.spent.samples += places.len() as f64;
+    }
+}
+
+/// A buffer of the small film, for splats from all over the image.
+struct Within<'a> {
+    buffer: &'a mut TileBuffer,
+    crop: Crop,
+}
+
+impl bidir_kernel::Film for Within<'_> {
+    type Rivals = Together;
+
+    fn add(&mut self, contribution: Contribution) {
+        self.buffer.add(contribution);
+    }
+
+    fn splat(&mut self, raster: Vec2, contribution: Contribution) {
+        let fold = |at: f32, first: u32, length: u32| first as f32 + (at - first as f32).rem_euclid(length as f32);
+        let Crop { x, y, width, height } = self.crop;
+        self.buffer.splat(Vec2::new(fold(raster.x, x, width), fold(raster.y, y, height)), contribution);
+    }
+}
