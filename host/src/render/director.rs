@@ -8,7 +8,7 @@ use super::{Job, Status, Target, pilot::Pilot};
 use crate::{
     plan::{
         Plan, Stage,
-        choice::{Choice, candidates, choose},
+        choice::{Choice, Open, choose},
         effects::Effects,
     },
     scene::{
@@ -64,7 +64,7 @@ impl Director for Given {
 const SHARE: f64 = 0.02;
 
 /// Pixels that the first pilot looks at, at least and at most.
-const FIRST: [f64; 2] = [256.0, 16_384.0];
+const FIRST: [f64; 2] = [256.0, 4_096.0];
 
 /// About how many camera paths one of the pilot's pixels costs.
 const PATHS_PER_PIXEL: f64 = 14.0;
@@ -78,7 +78,7 @@ const MOST_AGAIN: u32 = 5;
 /// A plan that a pilot finds before the first sample, and looks after as the render goes on.
 #[derive(Debug)]
 pub struct Auto {
-    stages: Vec<Stage>,
+    open: Open,
     pilot: Pilot,
     plan: Plan,
     choice: Option<Choice>,
@@ -98,7 +98,7 @@ impl Auto {
         let crop = description.film.crop;
         let max_depth = description.integrator.max_depth;
         Self {
-            stages: candidates(effects, max_depth),
+            open: Open::of(effects, max_depth),
             pilot: Pilot::new(&description.film, effects, max_depth),
             plan: Plan { stages: Vec::new() },
             choice: None,
@@ -124,16 +124,14 @@ impl Auto {
     pub fn look(&mut self, scene: &Scene, job: &Job, time: Duration, pixels: u64, from: u32) {
         let start = Instant::now();
         let under_way = self.plan.last().copied();
-        if self.stages.len() > 1 {
+        if !self.open.is_settled() {
             self.pilot.look(scene, job, time, pixels);
-            self.choice = choose(&self.stages, self.pilot.evidence(), &self.pilot.costs(), under_way.as_ref());
+            self.choice = choose(&self.open, self.pilot.evidence(), &self.pilot.costs(), under_way.as_ref());
         }
         let chosen = match &self.choice {
             Some(choice) if choice.chosen.error.is_some() => choice.chosen.stage,
             // Nothing was seen, or there is no choice.
-            _ => {
-                self.stages.iter().copied().max_by(|a, b| breadth(a).total_cmp(&breadth(b))).unwrap_or(Stage::of(&job.strategy.techniques))
-            }
+            _ => self.open.broadest().unwrap_or(Stage::of(&job.strategy.techniques)),
         };
         if under_way.is_none_or(|stage| stage.techniques() != chosen.techniques()) {
             self.plan.stages.push(Stage { from, ..chosen });
@@ -152,22 +150,13 @@ impl Auto {
     }
 }
 
-/// How many ways to make a path a stage has: all of them once, before more of some.
-fn breadth(stage: &Stage) -> f64 {
-    let techniques = stage.techniques();
-    [techniques.light_hit, techniques.next_event, techniques.connection, techniques.lens_splat, techniques.lens_hit]
-        .map(|count| count.min(1.0))
-        .iter()
-        .sum()
-}
-
 impl Director for Auto {
     fn next(&mut self, scene: &Scene, job: &Job, status: &Status) -> Leg {
         if self.plan.stages.is_empty() {
             let (time, pixels) = self.first(job.target);
             self.look(scene, job, time, pixels, status.samples);
             self.again = self.elapsed.mul_f64(2.0 / SHARE);
-        } else if status.elapsed >= self.again && self.left > 0 && self.stages.len() > 1 {
+        } else if status.elapsed >= self.again && self.left > 0 && !self.open.is_settled() {
             self.left -= 1;
             let time = status.elapsed.mul_f64(SHARE).saturating_sub(self.elapsed);
             self.look(scene, job, time, u64::MAX / 2, status.samples);

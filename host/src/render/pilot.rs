@@ -31,8 +31,8 @@ const ROUND: u32 = 128;
 /// About how many blocks the image has.
 const BLOCKS: f64 = 256.0;
 
-/// The most contributions that are kept, all threads together.
-const MOST_KEPT: usize = 1 << 22;
+/// The most contributions that are kept: some 15 MB of them, and a tenth of a second to weigh plans by.
+const MOST_KEPT: usize = 1 << 18;
 
 /// The film that costs are measured with is no larger than this, in pixels.
 const FILM: u32 = 64;
@@ -136,6 +136,9 @@ impl Pilot {
     /// `strategy` is any of the scene's: how deep paths go is taken from it.
     pub fn look(&mut self, scene: &Scene, job: &Job, time: Duration, pixels: u64) {
         let threads = job.threads.max(1) as u64;
+        if self.evidence.len() >= MOST_KEPT {
+            return;
+        }
         let rounds = pixels.div_ceil(u64::from(ROUND)).div_ceil(threads).max(1);
         let first = self.rounds;
         let this = &*self;
@@ -164,6 +167,7 @@ impl Pilot {
     /// One thread's part; `None` where a plugin broke off, which the render will meet as well.
     fn part<N: Source>(&self, scene: &Scene, job: &Job, rounds: impl Iterator<Item = u64>, time: Duration) -> Option<Part> {
         let clock = ThreadTime::now();
+        let room = MOST_KEPT.saturating_sub(self.evidence.len());
         let view = View::new(scene, job.strictness);
         let strategy = Strategy { techniques: self.techniques, heuristic: Heuristic::Balance, ..job.strategy };
         let (mut camera_path, mut light_path) = (storage(&strategy), storage(&strategy));
@@ -189,7 +193,7 @@ impl Pilot {
             if view.sandbox().faulted() {
                 return None;
             }
-            if clock.elapsed() >= time || kept.evidence.len() > MOST_KEPT / job.threads.max(1) {
+            if clock.elapsed() >= time || kept.evidence.len() * job.threads.max(1) > room {
                 break;
             }
         }
