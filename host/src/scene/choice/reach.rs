@@ -15,6 +15,7 @@ use crate::{
 
 impl LightSource {
     /// About how much reaches `lit`, W/m², mean of the bands; 0 only where nothing does. What next event chooses by.
+    #[inline]
     pub(super) fn reaching(&self, lit: &Point, sandbox: &Sandbox) -> Real {
         match &self.seat {
             Seat::Shape(extent) => self.outflow.exitance as Real * INV_PI * solid_angle(extent, lit),
@@ -40,12 +41,14 @@ impl LightSource {
     }
 }
 
+#[inline]
 fn distance_squared(position: Vec3, lit: &Point) -> Real {
     let d = position - lit.position;
     math::dot(d, d).max(Real::MIN_POSITIVE)
 }
 
 /// About the solid angle under which `lit` sees a light's front; 0 only behind a flat one.
+#[inline]
 fn solid_angle(extent: &LightExtent, lit: &Point) -> Real {
     let flat = |shape: &Flat| {
         let area = shape.area;
