@@ -63,10 +63,12 @@ impl Lights {
             }
         }
         lights.powers = Shares::new(&powers);
-        lights.next_event = match lights.sources.len() {
-            0..=MOST_LOOKED_AT => NextEvent::Each,
-            ..Many::MOST => NextEvent::Clusters(Box::new(Many::new(&lights.sources))),
-            _ => NextEvent::Power,
+        lights.next_event = if lights.sources.len() <= MOST_LOOKED_AT {
+            NextEvent::Each
+        } else if lights.sources.len() < Many::MOST {
+            NextEvent::Clusters(Box::new(Many::new(&lights.sources)))
+        } else {
+            NextEvent::Power
         };
         (lights, ids)
     }
