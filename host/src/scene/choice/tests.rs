@@ -135,7 +135,7 @@ fn lights_are_picked_as_often_as_their_chances_say() {
 fn chances_below_a_samplers_step_are_met_too() {
     let sandbox = sandbox();
     let mut random = Random(4);
-    let faint = |i: usize| i % 100 != 0;
+    let faint = |i: usize| !i.is_multiple_of(100);
     let sources = (0..100_000).map(|i| point(random.cube(), if faint(i) { 1e-5 } else { 1.0 }, &sandbox));
     let (lights, _) = Lights::new(sources.collect());
     let (mut expected, mut found, mut picks) = (0.0, 0.0, 0.0);
