@@ -111,7 +111,7 @@ fn all_kinds_together() {
     agree("all_lights", &read(&lit_by(&[panel(), point, sun, sky, bulb].concat())), ALL);
 }
 
-/// More lights than next event looks at one by one: then they are chosen by power.
+/// More lights than next event looks at one by one.
 #[test]
 fn forty_of_them() {
     let lights: String = (0..40)
@@ -122,6 +122,37 @@ fn forty_of_them() {
         })
         .collect();
     agree("forty_lights", &read(&lit_by(&lights)), ALL);
+}
+
+/// Two hundred of every kind above the ball, with powers over two decades, some turned away from everything; beside them a ceiling that
+/// shines, a sky and a sun.
+#[test]
+fn two_hundred_of_all_kinds() {
+    let mut lights: String = (0..200)
+        .map(|i| {
+            let along = |step: f64| (f64::from(i) * step).fract();
+            let (x, y, z) = (3.0 * along(0.754_877_7) - 1.5, 1.45 + 1.2 * along(0.569_840_3), 2.4 * along(0.362_651_9) - 1.0);
+            let level = 100_f64.powf(along(0.618_034));
+            let place = format!(r#"<rotate x="1" angle="{}"/><translate value="{x}, {y}, {z}"/>"#, 360.0 * along(0.414_213_6));
+            let at = format!(r#"<point name="position" value="{x}, {y}, {z}"/>"#);
+            let intensity = rgb("intensity", &format!("{0}, {0}, {1}", 0.004 * level, 0.003 * level));
+            match i % 6 {
+                0 => shape("disk", &format!(r#"<scale value="0.03"/>{place}"#), &area(level)),
+                1 => shape("rectangle", &format!(r#"<scale value="0.02, 0.05, 1"/>{place}"#), &area(level)),
+                2 => shape("sphere", &format!(r#"<scale value="0.02"/>{place}"#), &area(level)),
+                3 => shape("cube", &format!(r#"<scale value="0.02, 0.01, 0.03"/>{place}"#), &area(level)),
+                4 => emitter(
+                    "spot",
+                    &(intensity + &float("cutoff_angle", 40.0) + &format!(r#"<transform name="to_world">{place}</transform>"#)),
+                ),
+                _ => emitter("point", &(intensity + &at)),
+            }
+        })
+        .collect();
+    lights += &emitter("constant", &rgb("radiance", "0.02, 0.02, 0.03"));
+    lights += &emitter("directional", &(rgb("irradiance", "0.1, 0.1, 0.08") + r#"<vector name="direction" value="-1, -2, -0.7"/>"#));
+    lights += &shape("rectangle", r#"<rotate x="1" angle="90"/><translate value="0, 2.8, 0"/>"#, &area(0.2));
+    agree_after(4, "two_hundred_lights", &read(&lit_by(&lights)), ALL);
 }
 
 /// Nothing but a light walk or a join of two finds light inside glass: a point light in a glass ball.

@@ -55,6 +55,11 @@ impl Scene {
         Self { geometry: self.geometry.with_triangles(triangles), ..self }
     }
 
+    /// The same scene with lights that receivers choose by power, as [`Lights::by_power`] has it.
+    pub fn with_lights_by_power(self) -> Self {
+        Self { lights: self.lights.by_power(), ..self }
+    }
+
     /// How many triangles and shapes without area were dropped.
     pub fn degenerate(&self) -> usize {
         self.degenerate

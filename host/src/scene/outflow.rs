@@ -12,6 +12,8 @@ pub struct Outflow {
     pub total: f64,
     /// Whether anything leaves towards −z.
     pub both_sides: bool,
+    /// The least z of a direction in which anything leaves: the cosine of a cone about z that holds nearly all.
+    pub reach: f64,
 }
 
 /// Directions asked for: so many squared.
@@ -22,7 +24,7 @@ const BEHIND: u32 = 8;
 
 impl Outflow {
     /// Nothing.
-    pub const NONE: Self = Self { exitance: 0.0, total: 0.0, both_sides: false };
+    pub const NONE: Self = Self { exitance: 0.0, total: 0.0, both_sides: false, reach: 1.0 };
 
     /// That of a profile.
     pub fn of(profile: &impl Profile) -> Self {
@@ -33,14 +35,19 @@ impl Outflow {
             let share = radiance / f64::from(emitted.profiled.pdf.0);
             sum.total += share;
             sum.exitance += share * f64::from(emitted.direction.z.abs());
-            sum.both_sides |= emitted.direction.z < 0.0 && radiance > 0.0;
+            if radiance > 0.0 {
+                sum.reach = sum.reach.min(f64::from(emitted.direction.z));
+            }
         }
-        let count = f64::from(ROOT * ROOT);
-        sum.both_sides |= (0..BEHIND * BEHIND).any(|i| {
+        for i in 0..BEHIND * BEHIND {
             let up = warp::cosine_hemisphere(centred(i, BEHIND));
             let behind = Vec3::new(up.x, up.y, -up.z);
-            !profile.eval(spread(i), behind).radiance.is_black()
-        });
+            if !profile.eval(spread(i), behind).radiance.is_black() {
+                sum.reach = sum.reach.min(f64::from(behind.z));
+            }
+        }
+        let count = f64::from(ROOT * ROOT);
+        sum.both_sides = sum.reach < 0.0;
         Self { exitance: sum.exitance / count, total: sum.total / count, ..sum }
     }
 }
@@ -77,7 +84,9 @@ mod tests {
 
     #[test]
     fn a_point_sends_four_pi_times_its_intensity() {
-        near(Outflow::of(&Isotropic { intensity: Spectrum::ONE }).total, 4.0 * std::f64::consts::PI, 1e-5);
+        let outflow = Outflow::of(&Isotropic { intensity: Spectrum::ONE });
+        near(outflow.total, 4.0 * std::f64::consts::PI, 1e-5);
+        assert!(outflow.reach < -0.99);
     }
 
     #[test]
@@ -85,6 +94,7 @@ mod tests {
         let (cutoff, beam_width) = (0.01 * PI, 0.01 * PI);
         let outflow = Outflow::of(&Spot { intensity: Spectrum::ONE, cutoff, beam_width });
         near(outflow.total, std::f64::consts::TAU * (1.0 - f64::from(cutoff).cos()), 1e-3);
+        assert!(outflow.reach > f64::from(cutoff).cos() && outflow.reach < f64::from(0.98 * cutoff).cos(), "{}", outflow.reach);
     }
 
     /// Shines backwards only.
