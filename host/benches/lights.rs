@@ -143,7 +143,7 @@ fn image(description: &Description, scene: &Scene, samples: u32, seed: u64) -> (
     };
     let status = render::render(scene, &film, &job, &AtomicBool::new(false), |_| None);
     assert!(status.fault.is_none() && status.samples == samples, "{:?}", status.fault);
-    (film.develop(0.0), status.cpu.as_secs_f64())
+    (film.develop(), status.cpu.as_secs_f64())
 }
 
 fn median(mut values: Vec<f64>) -> f64 {

@@ -11,12 +11,6 @@ const WALKS: [f64; 5] = [0.0, 0.25, 0.5, 1.0, 2.0];
 /// Connections per light path that are tried.
 const CONNECTIONS: [f64; 4] = [0.0, 0.25, 0.5, 1.0];
 
-/// Light points per vertex that are tried beside one.
-const NEXT_EVENTS: [f64; 2] = [0.0, 2.0];
-
-/// With so many of the best plans.
-const TRIED: usize = 3;
-
 /// A plan that is under way is left for one that is so much better.
 const HYSTERESIS: f64 = 1.03;
 
@@ -87,57 +81,41 @@ pub struct Worth {
 }
 
 /// The plans that a scene leaves open: counts of joins that cannot be made there are 0.
-#[derive(Clone, Debug)]
-pub struct Open {
-    /// With one next event per vertex, or light paths alone.
-    once: Vec<Stage>,
-    /// Other counts of next events that are tried with what is best with one.
-    next_events: Vec<f64>,
+pub fn open(effects: &Effects, max_depth: Option<u32>) -> Vec<Stage> {
+    let can = |join, count: f64| if possible(effects, max_depth, join) { count } else { 0.0 };
+    let mut all: Vec<Stage> = Vec::new();
+    let mut take = |light_hit: f64, next_event: f64, walks: f64, connection: f64| {
+        let stage = Stage::of(&Techniques {
+            light_hit: can(Join::LightHit, light_hit),
+            next_event: can(Join::NextEvent, next_event),
+            connection: can(Join::Connection, connection * walks),
+            lens_splat: can(Join::LensSplat, walks),
+            lens_hit: can(Join::LensHit, walks),
+        });
+        let techniques = stage.techniques();
+        if (techniques.light_walk() || techniques.camera_walk()) && !all.contains(&stage) {
+            all.push(stage);
+        }
+    };
+    for walks in WALKS {
+        for connection in CONNECTIONS {
+            // What two light walks of one camera path have in common the pilot cannot see.
+            take(1.0, 1.0, walks, if walks <= 1.0 { connection } else { 0.0 });
+        }
+        take(1.0, 0.0, walks, 0.0);
+    }
+    take(0.0, 0.0, 1.0, 0.0);
+    all
 }
 
-impl Open {
-    /// Those of a scene with these effects.
-    pub fn of(effects: &Effects, max_depth: Option<u32>) -> Self {
-        let can = |join, count: f64| if possible(effects, max_depth, join) { count } else { 0.0 };
-        let mut once: Vec<Stage> = Vec::new();
-        let mut take = |light_hit: f64, next_event: f64, walks: f64, connection: f64| {
-            let stage = Stage::of(&Techniques {
-                light_hit: can(Join::LightHit, light_hit),
-                next_event: can(Join::NextEvent, next_event),
-                connection: can(Join::Connection, connection * walks),
-                lens_splat: can(Join::LensSplat, walks),
-                lens_hit: can(Join::LensHit, walks),
-            });
-            let techniques = stage.techniques();
-            if (techniques.light_walk() || techniques.camera_walk()) && !once.contains(&stage) {
-                once.push(stage);
-            }
-        };
-        for walks in WALKS {
-            for connection in CONNECTIONS {
-                // What two light walks of one camera path have in common the pilot cannot see.
-                take(1.0, 1.0, walks, if walks <= 1.0 { connection } else { 0.0 });
-            }
-        }
-        take(0.0, 0.0, 1.0, 0.0);
-        let next_events = if possible(effects, max_depth, Join::NextEvent) { NEXT_EVENTS.to_vec() } else { Vec::new() };
-        Self { once, next_events }
-    }
-
-    /// Whether there is nothing to choose.
-    pub fn is_settled(&self) -> bool {
-        self.once.len() < 2 && self.next_events.is_empty()
-    }
-
-    /// The plan with the most ways to make a path, each once: for a scene of which nothing was seen.
-    pub fn broadest(&self) -> Option<Stage> {
-        let breadth = |stage: &Stage| Join::ALL.map(|join| stage.effort(join).min(1.0)).iter().sum::<f64>();
-        self.once.iter().copied().max_by(|a, b| breadth(a).total_cmp(&breadth(b)))
-    }
+/// The plan with the most ways to make a path, each once: for a scene of which nothing was seen.
+pub fn broadest(open: &[Stage]) -> Option<Stage> {
+    let breadth = |stage: &Stage| Join::ALL.map(|join| stage.effort(join).min(1.0)).iter().sum::<f64>();
+    open.iter().copied().max_by(|a, b| breadth(a).total_cmp(&breadth(b)))
 }
 
 /// The best of the open plans, by what the pilot saw and what it took; the stage under way, unless another one is clearly better.
-pub fn choose(open: &Open, evidence: &Evidence, costs: &Costs, under_way: Option<&Stage>) -> Option<Choice> {
+pub fn choose(open: &[Stage], evidence: &Evidence, costs: &Costs, under_way: Option<&Stage>) -> Option<Choice> {
     let look = |stages: &[Stage]| -> Vec<Candidate> {
         let errors = evidence.errors(stages);
         let candidate = |(stage, error): (&Stage, f64)| Candidate {
@@ -147,18 +125,11 @@ pub fn choose(open: &Open, evidence: &Evidence, costs: &Costs, under_way: Option
         };
         stages.iter().zip(errors).map(candidate).collect()
     };
-    let sort = |all: &mut Vec<Candidate>| all.sort_by(|a, b| b.efficiency().total_cmp(&a.efficiency()));
-    let mut all = look(&open.once);
-    sort(&mut all);
-    // How many next events are best hardly depends on the rest.
-    let with = |candidate: &Candidate, next_event: f64| Stage { next_event, ..candidate.stage };
-    let lit = all.iter().filter(|candidate| candidate.stage.next_event > 0.0).take(TRIED);
-    let more: Vec<Stage> = lit.flat_map(|candidate| open.next_events.iter().map(|&next_event| with(candidate, next_event))).collect();
-    all.extend(look(&more));
+    let mut all = look(open);
     if let Some(stage) = under_way.filter(|stage| all.iter().all(|candidate| candidate.stage.techniques() != stage.techniques())) {
         all.extend(look(&[*stage]));
     }
-    sort(&mut all);
+    all.sort_by(|a, b| b.efficiency().total_cmp(&a.efficiency()));
     let best = *all.first()?;
     let same = |candidate: &&Candidate| under_way.is_some_and(|stage| stage.techniques() == candidate.stage.techniques());
     let chosen = match all.iter().find(same) {
@@ -172,7 +143,7 @@ pub fn choose(open: &Open, evidence: &Evidence, costs: &Costs, under_way: Option
         cost: (1.0 - left.cost / chosen.cost).max(0.0),
         error_without: left.error.zip(chosen.error).map(|(without, with)| without / with.max(f64::MIN_POSITIVE)),
     });
-    Some(Choice { chosen, joins: joins.collect(), costs: *costs, camera_paths: 2 * evidence.pairs(), candidates: all })
+    Some(Choice { chosen, joins: joins.collect(), costs: *costs, camera_paths: evidence.samples(), candidates: all })
 }
 
 impl Stage {
@@ -201,24 +172,27 @@ mod tests {
 
     #[test]
     fn what_a_scene_cannot_have_is_not_tried() {
-        let open = Open::of(&ROOM, None);
-        assert!(!open.is_settled());
-        assert!(open.once.iter().all(|stage| stage.lens_hit == 0.0 && stage.light_hit <= 1.0 && stage.connection <= stage.lens_splat));
-        assert!(Open::of(&ROOM, Some(2)).once.iter().all(|stage| stage.connection == 0.0));
+        let stages = open(&ROOM, None);
+        assert!(stages.len() > 10);
+        assert!(stages.iter().all(|stage| stage.lens_hit == 0.0 && stage.light_hit <= 1.0 && stage.connection <= stage.lens_splat));
+        assert!(open(&ROOM, Some(2)).iter().all(|stage| stage.connection == 0.0));
         let mirrors = Effects { diffuse: false, delta_reflection: true, hidden_emitters: true, ..ROOM };
-        let open = Open::of(&mirrors, None);
-        assert!(open.is_settled());
-        assert_eq!(open.broadest(), Some(Stage::of(&Techniques::PATH.only(Join::LightHit))));
-        assert_eq!(Open::of(&Effects::NONE, None).broadest(), None);
+        assert_eq!(open(&mirrors, None), [Stage::of(&Techniques::PATH.only(Join::LightHit))]);
+        assert_eq!(broadest(&open(&mirrors, None)), Some(Stage::of(&Techniques::PATH.only(Join::LightHit))));
+        assert_eq!(broadest(&open(&Effects::NONE, None)), None);
+        assert_eq!(broadest(&stages).map(|stage| stage.connection), Some(1.0));
     }
 
     fn evidence(shares: [f64; 5]) -> Evidence {
-        let mut evidence = Evidence::new(vec![1.0], &Techniques { next_event: 2.0, ..Techniques::BIDIRECTIONAL });
+        let mut evidence = Evidence::new(vec![1.0]);
         for i in 0..64 {
             if i % 8 == 0 {
                 evidence.add(Brought { value: 1.0, technique: Technique { s: 1, t: 3 }, shares });
             }
-            evidence.end_pair(0, evidence.len());
+            evidence.end_sample();
+            if i % 16 == 15 {
+                evidence.end_place(0);
+            }
         }
         evidence
     }
@@ -227,7 +201,7 @@ mod tests {
 
     #[test]
     fn light_paths_run_where_they_pay() {
-        let open = Open::of(&ROOM, None);
+        let open = open(&ROOM, None);
         let choose = |shares| choose(&open, &evidence(shares), &COSTS, None).unwrap().chosen.stage;
         // What the camera finds as well as anything.
         assert_eq!(choose([0.2, 0.78, 0.01, 0.01, 0.0]).lens_splat, 0.0);
@@ -240,13 +214,13 @@ mod tests {
 
     #[test]
     fn a_plan_under_way_stays_unless_another_is_clearly_better() {
-        let open = Open::of(&ROOM, None);
+        let open = open(&ROOM, None);
         let evidence = evidence([0.2, 0.78, 0.01, 0.01, 0.0]);
         let best = choose(&open, &evidence, &COSTS, None).unwrap();
         let second = best.candidates[1].stage;
         let stays = best.candidates[1].efficiency() * HYSTERESIS >= best.chosen.efficiency();
         let again = choose(&open, &evidence, &COSTS, Some(&second)).unwrap().chosen.stage;
         assert_eq!(again == second, stays);
-        assert_eq!(choose(&open, &evidence, &COSTS, Some(&best.candidates[15].stage)).unwrap().chosen.stage, best.chosen.stage);
+        assert_eq!(choose(&open, &evidence, &COSTS, Some(&best.candidates[12].stage)).unwrap().chosen.stage, best.chosen.stage);
     }
 }

@@ -4,10 +4,13 @@
 //! path among the kinds of join, w_j. Under counts c'_j the same path is made Σ c'_j/c_j w_j times as densely, so its second moment is
 //! X² over that: every sample speaks for every plan, those of rare paths too, which the plan in question would hardly ever
 //! make (Grittmann, Yazici, Georgiev & Křivánek 2022, "Efficiency-Aware Multiple Importance Sampling for Bidirectional Rendering
-//! Algorithms"). The square of the mean comes from pairs of samples of the same pixel; what the contributions of one camera path have
-//! in common comes from their products, which count as often as both are made together.
+//! Algorithms").
+//!
+//! What is left of a plan's error is seen rather than told: each pixel that is looked at has two independent runs of a few of the render's
+//! own samples, stratified as they are there, and half the square of their difference is what such a run varies by. Of the paths that the
+//! plan makes itself, this takes the place of their second moments.
 
-use bidir_kernel::{Join, Technique, Techniques};
+use bidir_kernel::{Join, Technique};
 
 use super::Stage;
 
@@ -28,33 +31,31 @@ pub struct Brought {
 /// All that a pilot brought. Blocks are parts of the image whose pixels are taken to be about equally bright.
 #[derive(Clone, Debug, Default)]
 pub struct Evidence {
-    /// The pilot's counts.
-    counts: [f64; Join::COUNT],
     /// Pixels of the image.
     pixels: f64,
     /// Pixels of each block.
     sizes: Vec<f64>,
-    /// Two samples of one pixel each.
-    pairs: Vec<Pair>,
+    places: Vec<Place>,
+    /// Where the contributions of each camera path end in `camera`.
+    ends: Vec<usize>,
     camera: Vec<Brought>,
     splats: Vec<(u32, Brought)>,
     /// Light walks.
     walks: f64,
 }
 
+/// A pixel that was looked at.
 #[derive(Clone, Copy, Debug)]
-struct Pair {
+struct Place {
     block: u32,
-    /// Where each sample's contributions end in `camera`.
-    ends: [usize; 2],
+    /// Where its camera paths end in `ends`: those of even and of odd number are the two runs.
+    end: usize,
 }
 
 impl Evidence {
-    /// Nothing yet, of an image whose blocks have that many pixels, sampled with these counts. Next event is sampled twice, so that it shows
-    /// what its samples at one vertex have in common.
-    pub fn new(sizes: Vec<f64>, counts: &Techniques) -> Self {
-        let counts = Join::ALL.map(|join| counts.effort(join));
-        Self { counts, pixels: sizes.iter().sum(), sizes, ..Self::default() }
+    /// Nothing yet, of an image whose blocks have that many pixels.
+    pub fn new(sizes: Vec<f64>) -> Self {
+        Self { pixels: sizes.iter().sum(), sizes, ..Self::default() }
     }
 
     /// A contribution of the camera path under way.
@@ -77,35 +78,51 @@ impl Evidence {
         self.camera.is_empty()
     }
 
-    /// Two samples of a pixel of this block are done, each with its light walk; the first one's contributions end at `middle`.
-    pub fn end_pair(&mut self, block: u32, middle: usize) {
-        self.pairs.push(Pair { block, ends: [middle, self.camera.len()] });
-        self.walks += 2.0;
+    /// A camera path and its light path are done.
+    pub fn end_sample(&mut self) {
+        self.ends.push(self.camera.len());
+        self.walks += 1.0;
     }
 
-    /// Pairs of samples.
-    pub fn pairs(&self) -> usize {
-        self.pairs.len()
+    /// All camera paths of a pixel of this block are done, the two runs in turn.
+    pub fn end_place(&mut self, block: u32) {
+        self.places.push(Place { block, end: self.ends.len() });
+    }
+
+    /// Camera paths.
+    pub fn samples(&self) -> usize {
+        self.ends.len()
     }
 
     /// Takes in what another thread brought.
     pub fn merge(&mut self, other: Self) {
-        let first = self.camera.len();
-        self.pairs.extend(other.pairs.into_iter().map(|pair| Pair { ends: pair.ends.map(|end| end + first), ..pair }));
+        let (camera, ends) = (self.camera.len(), self.ends.len());
+        self.places.extend(other.places.into_iter().map(|place| Place { end: place.end + ends, ..place }));
+        self.ends.extend(other.ends.into_iter().map(|end| end + camera));
         self.camera.extend(other.camera);
         self.splats.extend(other.splats);
         self.walks += other.walks;
     }
 
+    /// Each pixel that was looked at, with its camera paths' contributions.
+    fn places(&self) -> impl Iterator<Item = (u32, impl Iterator<Item = &[Brought]>)> {
+        let starts = std::iter::once(0).chain(self.places.iter().map(|place| place.end));
+        self.places.iter().zip(starts).map(|(place, start)| {
+            let first = start.checked_sub(1).map_or(0, |before| self.ends[before]);
+            let ends = &self.ends[start..place.end];
+            let starts = std::iter::once(first).chain(ends.iter().copied());
+            (place.block, starts.zip(ends).map(|(start, &end)| &self.camera[start..end]))
+        })
+    }
+
     /// What a squared error counts in each block: 1 / (mean² + ε).
     fn importance(&self) -> Vec<f64> {
         let (mut sums, mut samples) = (vec![0.0; self.sizes.len()], vec![0.0; self.sizes.len()]);
-        let mut start = 0;
-        for pair in &self.pairs {
-            let block = pair.block as usize;
-            samples[block] += 2.0;
-            sums[block] += self.camera[start..pair.ends[1]].iter().map(|brought| brought.value).sum::<f64>();
-            start = pair.ends[1];
+        for (block, paths) in self.places() {
+            for path in paths {
+                samples[block as usize] += 1.0;
+                sums[block as usize] += path.iter().map(|brought| brought.value).sum::<f64>();
+            }
         }
         let mut means: Vec<f64> = sums.iter().zip(&samples).map(|(sum, n)| if *n > 0.0 { sum / n } else { 0.0 }).collect();
         for (block, brought) in &self.splats {
@@ -122,111 +139,89 @@ impl Evidence {
     }
 
     fn error(&self, stage: &Stage, importance: &[f64]) -> f64 {
-        let counts = Counts::of(stage, &self.counts);
-        let (mut sum, mut start) = (0.0, 0);
-        for pair in &self.pairs {
-            let (a, b) = (counts.sampled(&self.camera[start..pair.ends[0]]), counts.sampled(&self.camera[pair.ends[0]..pair.ends[1]]));
-            start = pair.ends[1];
-            let variance = 0.5 * (a.moment + b.moment + a.common + b.common) - a.total * b.total;
-            sum += variance * importance[pair.block as usize];
+        let counts = Counts::of(stage);
+        let mut camera = 0.0;
+        for (block, paths) in self.places() {
+            let mut runs = [Run::default(); 2];
+            for (number, path) in paths.enumerate() {
+                counts.sample(path, &mut runs[number % 2]);
+            }
+            camera += Run::variance(&runs) * importance[block as usize];
         }
-        let camera = sum / self.pairs.len().max(1) as f64;
         let splats: f64 = self.splats.iter().map(|(block, brought)| counts.moment(brought) * importance[*block as usize]).sum();
-        camera + splats / self.walks.max(1.0)
+        camera / self.places.len().max(1) as f64 + splats / self.walks.max(1.0)
     }
 }
 
-/// The counts of a plan as the pilot's samples see them.
+/// The counts of a plan.
 struct Counts {
-    /// Over the pilot's.
-    ratios: [f64; Join::COUNT],
-    next_event: f64,
-    connection: f64,
+    of: [f64; Join::COUNT],
     /// How often two pairs of vertices of the same two walks are both connected.
     both_connected: f64,
 }
 
-/// What one camera path would have brought.
+/// What a run of camera paths would have brought.
 #[derive(Clone, Copy, Debug, Default)]
-struct Sampled {
-    /// Σ over its paths of their second moments.
-    moment: f64,
-    /// The mean of all its contributions together.
+struct Run {
+    samples: f64,
     total: f64,
-    /// Σ of the products of different ones.
-    common: f64,
+    /// What the second moments of single paths, by all that the pilot saw, exceed those of the plan's own samples by.
+    unseen: f64,
+    /// What making only some of the connections adds.
+    rationed: f64,
+}
+
+impl Run {
+    /// Of one camera path.
+    fn variance([a, b]: &[Self; 2]) -> f64 {
+        if a.samples == 0.0 || b.samples == 0.0 {
+            return 0.0;
+        }
+        let samples = a.samples + b.samples;
+        let apart = a.total / a.samples - b.total / b.samples;
+        // Var(a − b) = σ² (1/m + 1/n).
+        let seen = apart * apart * a.samples * b.samples / samples;
+        seen + (a.unseen + b.unseen + a.rationed + b.rationed) / samples
+    }
 }
 
 impl Counts {
-    fn of(stage: &Stage, pilot: &[f64; Join::COUNT]) -> Self {
-        let mut ratios = Join::ALL.map(|join| stage.effort(join));
-        ratios.iter_mut().zip(pilot).filter(|(_, count)| **count > 0.0).for_each(|(ratio, count)| *ratio /= count);
+    fn of(stage: &Stage) -> Self {
         let walks = stage.techniques().light_walks();
         let chance = if walks > 0.0 { stage.connection / walks } else { 0.0 };
-        Self { ratios, next_event: stage.next_event, connection: stage.connection, both_connected: walks * chance * chance }
+        Self { of: Join::ALL.map(|join| stage.effort(join)), both_connected: walks * chance * chance }
     }
 
-    /// How much more densely a path is made than it was by the pilot.
+    /// How much more densely a path is made than it was by the pilot, which made each kind of join once.
     fn density(&self, brought: &Brought) -> f64 {
-        brought.shares.iter().zip(self.ratios).map(|(share, ratio)| share * ratio).sum()
+        brought.shares.iter().zip(self.of).map(|(share, count)| share * count).sum()
     }
 
     fn moment(&self, brought: &Brought) -> f64 {
         if brought.value == 0.0 { 0.0 } else { brought.value * brought.value / self.density(brought) }
     }
 
-    fn sampled(&self, brought: &[Brought]) -> Sampled {
-        let mut sampled = Sampled::default();
-        // What is made once or not at all; connections; and, by path length, next event.
-        let (mut squares, mut connected, mut lit) = (0.0, Sums::default(), [Sums::default(); LONGEST]);
-        for one in brought {
-            sampled.moment += self.moment(one);
+    /// One more camera path.
+    fn sample(&self, path: &[Brought], run: &mut Run) {
+        let (mut connected, mut squares) = (0.0, 0.0);
+        for one in path {
             let join = one.technique.join();
-            if self.ratios[join as usize] == 0.0 {
+            let count = self.of[join as usize];
+            run.unseen += self.moment(one);
+            if count == 0.0 {
                 continue;
             }
             let value = one.value / self.density(one);
-            match join {
-                Join::Connection => connected.add(value),
-                Join::NextEvent => lit[(one.technique.t as usize).min(LONGEST - 1)].add(value),
-                Join::LightHit | Join::LensSplat | Join::LensHit => {
-                    sampled.total += value;
-                    squares += value * value;
-                }
+            run.total += count * value;
+            run.unseen -= count * value * value;
+            if join == Join::Connection {
+                connected += value;
+                squares += value * value;
             }
         }
-        let count = self.next_event;
-        for lit in &lit {
-            // The pilot's two.
-            let mean = 0.5 * lit.sum;
-            sampled.total += count * mean;
-            squares += count * count * mean * mean - count * (count - 1.0) * 0.5 * lit.products();
-        }
-        sampled.total += self.connection * connected.sum;
-        squares += self.connection * self.connection * connected.sum * connected.sum - self.both_connected * connected.products();
-        sampled.common = sampled.total * sampled.total - squares;
-        sampled
-    }
-}
-
-/// Next event at later vertices than this is taken together.
-const LONGEST: usize = 16;
-
-#[derive(Clone, Copy, Debug, Default)]
-struct Sums {
-    sum: f64,
-    squares: f64,
-}
-
-impl Sums {
-    fn add(&mut self, value: f64) {
-        self.sum += value;
-        self.squares += value * value;
-    }
-
-    /// Σ of the products of different ones.
-    fn products(&self) -> f64 {
-        self.sum * self.sum - self.squares
+        let count = self.of[Join::Connection as usize];
+        run.rationed += self.both_connected * (connected * connected - squares) + count * squares - count * count * connected * connected;
+        run.samples += 1.0;
     }
 }
 
@@ -241,12 +236,12 @@ pub fn shares(technique: Technique, own: f64, rivals: impl Fn(Join) -> f64) -> [
 
 #[cfg(test)]
 mod tests {
+    use bidir_kernel::Techniques;
+
     use super::*;
 
-    const PILOT: Techniques = Techniques { next_event: 2.0, ..Techniques::BIDIRECTIONAL };
-
     fn one_block() -> Evidence {
-        Evidence::new(vec![1.0], &PILOT)
+        Evidence::new(vec![1.0])
     }
 
     fn brought(value: f64, s: u32, t: u32, shares: [f64; 5]) -> Brought {
@@ -259,40 +254,51 @@ mod tests {
     fn what_never_varies_has_no_error() {
         let mut evidence = one_block();
         for _ in 0..10 {
-            // Paths of two segments that landing brings half of and each of the two points of a light a quarter.
-            for half in 0..2 {
+            for _ in 0..4 {
                 evidence.add(brought(1.0, 0, 3, HALF));
-                evidence.add(brought(0.5, 1, 2, HALF));
-                evidence.add(brought(0.5, 1, 2, HALF));
-                if half == 1 {
-                    evidence.end_pair(0, evidence.len() - 3);
-                }
+                evidence.add(brought(1.0, 1, 2, HALF));
+                evidence.end_sample();
             }
+            evidence.end_place(0);
         }
-        let pilot = Stage::of(&Techniques { next_event: 2.0, ..Techniques::PATH });
-        let errors = evidence.errors(&[pilot]);
+        let errors = evidence.errors(&[Stage::of(&Techniques::PATH)]);
         assert!(errors[0].abs() < 1e-12, "{errors:?}");
     }
 
-    /// Next event at a vertex whose own brightness varies: more points of lights do not help.
     #[test]
-    fn what_samples_have_in_common_does_not_average_out() {
-        let mut evidence = one_block();
-        for i in 0..100 {
-            for half in 0..2 {
-                let value = if (i + half) % 2 == 0 { 2.0 } else { 0.0 };
-                let middle = evidence.len();
-                evidence.add(brought(0.5 * value, 1, 2, [0.0, 1.0, 0.0, 0.0, 0.0]));
-                evidence.add(brought(0.5 * value, 1, 2, [0.0, 1.0, 0.0, 0.0, 0.0]));
-                if half == 1 {
-                    evidence.end_pair(0, middle);
+    fn a_run_that_is_stratified_has_the_error_of_the_run() {
+        let of = |values: &[f64]| {
+            let mut evidence = one_block();
+            for _ in 0..10 {
+                for value in values {
+                    evidence.add(brought(*value, 0, 2, [1.0, 0.0, 0.0, 0.0, 0.0]));
+                    evidence.end_sample();
                 }
+                evidence.end_place(0);
             }
+            evidence.errors(&[Stage::of(&Techniques::PATH)])[0]
+        };
+        // Of two runs of two samples, each with a bright and a dark one, or one with both bright ones.
+        assert!(of(&[2.0, 2.0, 0.0, 0.0]).abs() < 1e-12);
+        assert!((of(&[2.0, 0.0, 2.0, 0.0]) - 4.0 / 1.01).abs() < 1e-9);
+    }
+
+    #[test]
+    fn connections_that_are_made_seldom_vary_more() {
+        let mut evidence = one_block();
+        for _ in 0..10 {
+            for _ in 0..4 {
+                evidence.add(brought(0.5, 2, 2, [0.0, 0.0, 1.0, 0.0, 0.0]));
+                evidence.add(brought(0.5, 2, 3, [0.0, 0.0, 1.0, 0.0, 0.0]));
+                evidence.end_sample();
+            }
+            evidence.end_place(0);
         }
-        let with = |next_event: f64| Stage::of(&Techniques { next_event, ..Techniques::PATH });
-        let errors = evidence.errors(&[with(1.0), with(2.0), with(4.0)]);
-        // Every pair has one bright sample and one dark one: (2 − 0)² / 2 over 1 + ε.
-        assert!(errors.iter().all(|error| (error - 2.0 / 1.01).abs() < 1e-9), "{errors:?}");
+        let with = |walks: f64, connection: f64| Stage::of(&Techniques { connection, lens_splat: walks, ..Techniques::NONE });
+        let errors = evidence.errors(&[with(1.0, 1.0), with(0.25, 0.25), with(1.0, 0.5)]);
+        assert!(errors[0].abs() < 1e-12, "{errors:?}");
+        // All four times as bright in every fourth sample: 4 − 1; each of two halves twice as bright in every other: (1 + ½) − 1.
+        assert!((errors[1] - 3.0 / 1.01).abs() < 1e-9 && (errors[2] - 0.5 / 1.01).abs() < 1e-9, "{errors:?}");
     }
 
     #[test]
@@ -303,7 +309,9 @@ mod tests {
             if i == 0 {
                 evidence.splat(0, brought(1.0, 3, 1, shares));
             }
-            evidence.end_pair(0, 0);
+            evidence.end_sample();
+            evidence.end_sample();
+            evidence.end_place(0);
         }
         let counts = |light_hit: f64, lens_splat: f64| Stage::of(&Techniques { light_hit, lens_splat, ..Techniques::NONE });
         let errors = evidence.errors(&[counts(1.0, 1.0), counts(1.0, 0.0), counts(0.0, 0.0), counts(1.0, 2.0)]);
@@ -317,7 +325,9 @@ mod tests {
         let part = |value: f64| {
             let mut evidence = one_block();
             evidence.add(brought(value, 0, 2, HALF));
-            evidence.end_pair(0, 0);
+            evidence.end_sample();
+            evidence.end_sample();
+            evidence.end_place(0);
             evidence
         };
         let (mut ab, mut ba) = (part(1.0), part(3.0));
@@ -325,6 +335,6 @@ mod tests {
         ba.merge(part(1.0));
         let stage = [Stage::of(&Techniques::PATH)];
         assert_eq!(ab.errors(&stage), ba.errors(&stage));
-        assert_eq!(ab.pairs(), 2);
+        assert_eq!(ab.samples(), 4);
     }
 }

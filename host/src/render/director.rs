@@ -8,7 +8,7 @@ use super::{Job, Status, Target, pilot::Pilot};
 use crate::{
     plan::{
         Plan, Stage,
-        choice::{Choice, Open, choose},
+        choice::{Choice, broadest, choose, open},
         effects::Effects,
     },
     scene::{
@@ -64,10 +64,10 @@ impl Director for Given {
 const SHARE: f64 = 0.02;
 
 /// Pixels that the first pilot looks at, at least and at most.
-const FIRST: [f64; 2] = [256.0, 4_096.0];
+const FIRST: [f64; 2] = [64.0, 1_024.0];
 
 /// About how many camera paths one of the pilot's pixels costs.
-const PATHS_PER_PIXEL: f64 = 14.0;
+const PATHS_PER_PIXEL: f64 = 90.0;
 
 /// Pilots come again when a render has taken so many times as long as when the last one came.
 const AGAIN: f64 = 4.0;
@@ -78,7 +78,7 @@ const MOST_AGAIN: u32 = 5;
 /// A plan that a pilot finds before the first sample, and looks after as the render goes on.
 #[derive(Debug)]
 pub struct Auto {
-    open: Open,
+    open: Vec<Stage>,
     pilot: Pilot,
     plan: Plan,
     choice: Option<Choice>,
@@ -98,7 +98,7 @@ impl Auto {
         let crop = description.film.crop;
         let max_depth = description.integrator.max_depth;
         Self {
-            open: Open::of(effects, max_depth),
+            open: open(effects, max_depth),
             pilot: Pilot::new(&description.film, effects, max_depth),
             plan: Plan { stages: Vec::new() },
             choice: None,
@@ -124,14 +124,14 @@ impl Auto {
     pub fn look(&mut self, scene: &Scene, job: &Job, time: Duration, pixels: u64, from: u32) {
         let start = Instant::now();
         let under_way = self.plan.last().copied();
-        if !self.open.is_settled() {
+        if self.open.len() > 1 {
             self.pilot.look(scene, job, time, pixels);
             self.choice = choose(&self.open, self.pilot.evidence(), &self.pilot.costs(), under_way.as_ref());
         }
         let chosen = match &self.choice {
             Some(choice) if choice.chosen.error.is_some() => choice.chosen.stage,
             // Nothing was seen, or there is no choice.
-            _ => self.open.broadest().unwrap_or(Stage::of(&job.strategy.techniques)),
+            _ => broadest(&self.open).unwrap_or(Stage::of(&job.strategy.techniques)),
         };
         if under_way.is_none_or(|stage| stage.techniques() != chosen.techniques()) {
             self.plan.stages.push(Stage { from, ..chosen });
@@ -156,7 +156,7 @@ impl Director for Auto {
             let (time, pixels) = self.first(job.target);
             self.look(scene, job, time, pixels, status.samples);
             self.again = self.elapsed.mul_f64(2.0 / SHARE);
-        } else if status.elapsed >= self.again && self.left > 0 && !self.open.is_settled() {
+        } else if status.elapsed >= self.again && self.left > 0 && self.open.len() > 1 {
             self.left -= 1;
             let time = status.elapsed.mul_f64(SHARE).saturating_sub(self.elapsed);
             self.look(scene, job, time, u64::MAX / 2, status.samples);

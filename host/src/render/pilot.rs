@@ -26,7 +26,13 @@ use crate::{
 };
 
 /// Pixels that one round looks at.
-const ROUND: u32 = 128;
+const ROUND: u32 = 16;
+
+/// Samples of each of them, half of them in either run.
+const SAMPLES: u32 = 16;
+
+/// Of these, how many costs are measured with.
+const TIMED: usize = 4;
 
 /// About how many blocks the image has.
 const BLOCKS: f64 = 256.0;
@@ -106,8 +112,7 @@ impl Pilot {
         let one = |join| if possible(effects, max_depth, join) { 1.0 } else { 0.0 };
         let techniques = Techniques {
             light_hit: one(Join::LightHit),
-            // Two show what they have in common.
-            next_event: 2.0 * one(Join::NextEvent),
+            next_event: one(Join::NextEvent),
             connection: one(Join::Connection),
             lens_splat: one(Join::LensSplat),
             lens_hit: one(Join::LensHit),
@@ -116,15 +121,7 @@ impl Pilot {
         let Crop { x, y, width, height } = settings.crop;
         let crop = Crop { x, y, width: width.min(FILM), height: height.min(FILM) };
         let small = FilmSettings { crop, ..settings.clone() };
-        Self {
-            evidence: Evidence::new(blocks.sizes(), &techniques),
-            spent: Spent::default(),
-            blocks,
-            techniques,
-            small,
-            rounds: 0,
-            cpu: Duration::ZERO,
-        }
+        Self { evidence: Evidence::new(blocks.sizes()), spent: Spent::default(), blocks, techniques, small, rounds: 0, cpu: Duration::ZERO }
     }
 
     /// What was seen.
@@ -171,25 +168,23 @@ impl Pilot {
         let view = View::new(scene, job.strictness);
         let strategy = Strategy { techniques: self.techniques, heuristic: Heuristic::Balance, ..job.strategy };
         let (mut camera_path, mut light_path) = (storage(&strategy), storage(&strategy));
-        let mut kept =
-            Kept { evidence: Evidence::new(self.blocks.sizes(), &self.techniques), blocks: self.blocks, weighed: (1.0, ByJoin::NONE) };
+        let mut kept = Kept { evidence: Evidence::new(self.blocks.sizes()), blocks: self.blocks, weighed: (1.0, ByJoin::NONE) };
         let mut timing = Timing { spent: Spent::default(), film: Film::new(&self.small).ok()?, crop: self.small.crop };
         for round in rounds {
             view.sandbox().begin_tile(round);
             let places: Vec<_> = (0..ROUND).map(|i| self.place(round * u64::from(ROUND) + u64::from(i))).collect();
             // The render's own numbers, of a seed that is not the render's.
-            let halves = [0, 1].map(|half| N::new(!job.seed, 2 * round as u32 + half));
+            let sources: Vec<N> = (0..SAMPLES).map(|index| N::new(!job.seed, index)).collect();
             for &place in &places {
-                let mut middle = 0;
-                for source in &halves {
-                    middle = kept.evidence.len();
+                for source in &sources {
                     let (mut numbers, raster) = begun(source, place);
                     sample(&view, &strategy, &mut numbers, raster, &mut camera_path, &mut light_path, &mut kept);
+                    kept.evidence.end_sample();
                 }
                 let block = self.blocks.at(Vec2::new(place[0] as f32 + 0.5, place[1] as f32 + 0.5)).unwrap_or(0);
-                kept.evidence.end_pair(block, middle);
+                kept.evidence.end_place(block);
             }
-            timing.round(&view, &strategy, &places, &halves[0]);
+            timing.round(&view, &strategy, &places, &sources[..TIMED]);
             if view.sandbox().faulted() {
                 return None;
             }
@@ -275,19 +270,17 @@ struct Timing {
 
 impl Timing {
     /// Samples these pixels in each of the ways that costs are told from.
-    fn round<N: Source>(&mut self, view: &View, all: &Strategy, places: &[[u32; 2]], source: &N) {
+    fn round<N: Source>(&mut self, view: &View, all: &Strategy, places: &[[u32; 2]], sources: &[N]) {
         let Techniques { next_event, lens_splat, lens_hit, .. } = all.techniques;
-        let once = Techniques { next_event: 0.5 * next_event, ..all.techniques };
-        let twice = Techniques { connection: 0.0, lens_splat: 0.0, lens_hit: 0.0, ..all.techniques };
-        let path = Techniques { next_event: once.next_event, ..twice };
+        let path = Techniques { connection: 0.0, lens_splat: 0.0, lens_hit: 0.0, ..all.techniques };
         let light = Techniques { lens_splat, lens_hit, ..Techniques::NONE };
-        let ways = [path, twice, light, once];
+        let ways = [path, Techniques { next_event: 2.0 * next_event, ..path }, light, all.techniques];
         for (techniques, nanoseconds) in ways.into_iter().zip(&mut self.spent.nanoseconds) {
             let strategy = Strategy { techniques, ..*all };
             let (mut camera_path, mut light_path) = (storage(&strategy), storage(&strategy));
             let clock = ThreadTime::now();
             let Some(mut buffer) = self.film.claim(u32::MAX) else { return };
-            for &place in places {
+            for (&place, source) in places.iter().flat_map(|place| sources.iter().map(move |source| (place, source))) {
                 let (mut numbers, raster) = begun(source, place);
                 buffer.begin(raster);
                 let mut film = Within { buffer: &mut buffer, crop: self.crop };
@@ -297,7 +290,7 @@ impl Timing {
             self.film.commit(buffer);
             *nanoseconds += clock.elapsed().as_nanos() as f64;
         }
-        self.spent.samples += places.len() as f64;
+        self.spent.samples += (places.len() * sources.len()) as f64;
     }
 }
 
