@@ -59,7 +59,6 @@ const SIZE: usize = 128;
 struct Picture(Vec<Spectrum>, usize);
 impl Film for Picture {
     type Rivals = Together;
-
     fn add(&mut self, c: Contribution) {
         self.0[self.1] += c.value * c.weight;
     }

@@ -125,6 +125,9 @@ pub fn choose(open: &[Stage], evidence: &Evidence, costs: &Costs, under_way: Opt
         };
         stages.iter().zip(errors).map(candidate).collect()
     };
+    if evidence.samples() == 0 {
+        return None;
+    }
     let mut all = look(open);
     if let Some(stage) = under_way.filter(|stage| all.iter().all(|candidate| candidate.stage.techniques() != stage.techniques())) {
         all.extend(look(&[*stage]));

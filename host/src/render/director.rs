@@ -126,12 +126,13 @@ impl Auto {
         let under_way = self.plan.last().copied();
         if self.open.len() > 1 {
             self.pilot.look(scene, job, time, pixels);
-            self.choice = choose(&self.open, self.pilot.evidence(), &self.pilot.costs(), under_way.as_ref());
+            // Where nothing varies that was seen, there may be something that was not.
+            self.choice = choose(&self.open, self.pilot.evidence(), &self.pilot.costs(), under_way.as_ref())
+                .filter(|choice| choice.chosen.error.is_some_and(|error| error > 0.0));
         }
         let chosen = match &self.choice {
-            Some(choice) if choice.chosen.error.is_some() => choice.chosen.stage,
-            // Nothing was seen, or there is no choice.
-            _ => broadest(&self.open).unwrap_or(Stage::of(&job.strategy.techniques)),
+            Some(choice) => choice.chosen.stage,
+            None => broadest(&self.open).unwrap_or(Stage::of(&job.strategy.techniques)),
         };
         if under_way.is_none_or(|stage| stage.techniques() != chosen.techniques()) {
             self.plan.stages.push(Stage { from, ..chosen });
