@@ -82,17 +82,11 @@ pub struct Worth {
 
 /// The plans that a scene leaves open: counts of joins that cannot be made there are 0.
 pub fn open(effects: &Effects, max_depth: Option<u32>) -> Vec<Stage> {
-    let can = |join, count: f64| if possible(effects, max_depth, join) { count } else { 0.0 };
     let mut all: Vec<Stage> = Vec::new();
     let mut take = |light_hit: f64, next_event: f64, walks: f64, connection: f64| {
-        let stage = Stage::of(&Techniques {
-            light_hit: can(Join::LightHit, light_hit),
-            next_event: can(Join::NextEvent, next_event),
-            connection: can(Join::Connection, connection * walks),
-            lens_splat: can(Join::LensSplat, walks),
-            lens_hit: can(Join::LensHit, walks),
-        });
-        let techniques = stage.techniques();
+        let counts = Techniques { light_hit, next_event, connection: connection * walks, lens_splat: walks, lens_hit: walks };
+        let techniques = possible(effects, max_depth, &counts);
+        let stage = Stage::of(&techniques);
         if (techniques.light_walk() || techniques.camera_walk()) && !all.contains(&stage) {
             all.push(stage);
         }

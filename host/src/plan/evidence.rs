@@ -1,8 +1,8 @@
 //! What a pilot saw, and how noisy it says other plans would be.
 //!
-//! The pilot samples every technique, c_j times per camera path, and keeps, with each contribution X, how the balance heuristic shared its
-//! path among the kinds of join, w_j. Under counts c'_j the same path is made Σ c'_j/c_j w_j times as densely, so its second moment is
-//! X² over that: every sample speaks for every plan, those of rare paths too, which the plan in question would hardly ever
+//! The pilot samples every technique once per camera path and keeps, with each contribution X, how the balance heuristic shared its path
+//! among the kinds of join, w_j. Under counts c_j the same path is made Σ c_j w_j times as densely, so its second moment is X² over
+//! that: every sample speaks for every plan, those of rare paths too, which the plan in question would hardly ever
 //! make (Grittmann, Yazici, Georgiev & Křivánek 2022, "Efficiency-Aware Multiple Importance Sampling for Bidirectional Rendering
 //! Algorithms").
 //!

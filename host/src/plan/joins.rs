@@ -1,6 +1,6 @@
 //! Which joins can make a path at all in a scene, and what a plan does with them.
 
-use bidir_kernel::{Join, Technique};
+use bidir_kernel::{Join, Technique, Techniques};
 use serde::Serialize;
 
 use super::{Stage, effects::Effects};
@@ -112,9 +112,16 @@ fn can(effects: &Effects, max_depth: Option<u32>, join: Join) -> Result<&'static
     }
 }
 
-/// Whether a kind of join can make any path in a scene with these effects.
-pub fn possible(effects: &Effects, max_depth: Option<u32>, join: Join) -> bool {
-    can(effects, max_depth, join).is_ok()
+/// These counts, those of joins that cannot make any path in a scene with these effects left out.
+pub fn possible(effects: &Effects, max_depth: Option<u32>, counts: &Techniques) -> Techniques {
+    let count = |join| if can(effects, max_depth, join).is_ok() { counts.effort(join) } else { 0.0 };
+    Techniques {
+        light_hit: count(Join::LightHit),
+        next_event: count(Join::NextEvent),
+        connection: count(Join::Connection),
+        lens_splat: count(Join::LensSplat),
+        lens_hit: count(Join::LensHit),
+    }
 }
 
 /// Whether one technique can make a path in a scene with these effects.
@@ -142,24 +149,7 @@ mod tests {
     use crate::plan::Named;
 
     /// A room with a lamp, seen by a pinhole.
-    const ROOM: Effects = Effects {
-        area_lights: true,
-        diffuse: true,
-        environment: false,
-        dirac_lights: false,
-        glossy_reflection: false,
-        glossy_transmission: false,
-        delta_reflection: false,
-        delta_transmission: false,
-        refraction: false,
-        straight_transmission: false,
-        textures: false,
-        shading_normals: false,
-        finite_lens: false,
-        parallel_rays: false,
-        clipping: false,
-        hidden_emitters: false,
-    };
+    const ROOM: Effects = Effects { area_lights: true, diffuse: true, ..Effects::NONE };
 
     fn impossible(effects: Effects, depth: Option<u32>) -> Vec<Join> {
         let verdicts = judge(&effects, &Named::Bdpt.stage().unwrap(), depth);

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use bidir_kernel::{ByJoin, Contribution, Heuristic, Join, Rivals, Sampler, Strategy, Techniques, Together, Vec2, Walk, sample};
+use bidir_kernel::{ByJoin, Contribution, Heuristic, Rivals, Sampler, Strategy, Techniques, Together, Vec2, Walk, sample};
 use cpu_time::ThreadTime;
 
 use super::{
@@ -37,7 +37,7 @@ const TIMED: usize = 4;
 /// About how many blocks the image has.
 const BLOCKS: f64 = 256.0;
 
-/// The most contributions that are kept: some 15 MB of them, and a tenth of a second to weigh plans by.
+/// The most contributions of camera paths that are kept: memory, and time to weigh plans by.
 const MOST_KEPT: usize = 1 << 18;
 
 /// The film that costs are measured with is no larger than this, in pixels.
@@ -52,8 +52,6 @@ pub struct Pilot {
     techniques: Techniques,
     small: FilmSettings,
     rounds: u64,
-    /// CPU time of all threads.
-    pub cpu: Duration,
 }
 
 /// CPU time of each kind of sample, and how many there were.
@@ -67,7 +65,6 @@ struct Spent {
 struct Part {
     evidence: Evidence,
     spent: Spent,
-    cpu: Duration,
 }
 
 /// What costs are told from.
@@ -109,19 +106,12 @@ impl Blocks {
 impl Pilot {
     /// Nothing seen yet. Techniques that cannot make a path in the scene are left out.
     pub fn new(settings: &FilmSettings, effects: &Effects, max_depth: Option<u32>) -> Self {
-        let one = |join| if possible(effects, max_depth, join) { 1.0 } else { 0.0 };
-        let techniques = Techniques {
-            light_hit: one(Join::LightHit),
-            next_event: one(Join::NextEvent),
-            connection: one(Join::Connection),
-            lens_splat: one(Join::LensSplat),
-            lens_hit: one(Join::LensHit),
-        };
+        let techniques = possible(effects, max_depth, &Techniques::BIDIRECTIONAL);
         let blocks = Blocks::new(settings.crop);
         let Crop { x, y, width, height } = settings.crop;
         let crop = Crop { x, y, width: width.min(FILM), height: height.min(FILM) };
         let small = FilmSettings { crop, ..settings.clone() };
-        Self { evidence: Evidence::new(blocks.sizes()), spent: Spent::default(), blocks, techniques, small, rounds: 0, cpu: Duration::ZERO }
+        Self { evidence: Evidence::new(blocks.sizes()), spent: Spent::default(), blocks, techniques, small, rounds: 0 }
     }
 
     /// What was seen.
@@ -130,7 +120,7 @@ impl Pilot {
     }
 
     /// Looks on, on all threads, until each has spent that much time or all together have looked at that many pixels; a round at least.
-    /// `strategy` is any of the scene's: how deep paths go is taken from it.
+    /// How deep paths go is the job's.
     pub fn look(&mut self, scene: &Scene, job: &Job, time: Duration, pixels: u64) {
         let threads = job.threads.max(1) as u64;
         if self.evidence.len() >= MOST_KEPT {
@@ -151,13 +141,12 @@ impl Pilot {
             workers.into_iter().filter_map(|worker| worker.join().ok().flatten()).collect()
         });
         self.rounds += rounds * threads;
-        for Part { evidence, spent, cpu } in parts {
+        for Part { evidence, spent } in parts {
             self.evidence.merge(evidence);
             for (all, one) in self.spent.nanoseconds.iter_mut().zip(spent.nanoseconds) {
                 *all += one;
             }
             self.spent.samples += spent.samples;
-            self.cpu += cpu;
         }
     }
 
@@ -170,11 +159,11 @@ impl Pilot {
         let (mut camera_path, mut light_path) = (storage(&strategy), storage(&strategy));
         let mut kept = Kept { evidence: Evidence::new(self.blocks.sizes()), blocks: self.blocks, weighed: (1.0, ByJoin::NONE) };
         let mut timing = Timing { spent: Spent::default(), film: Film::new(&self.small).ok()?, crop: self.small.crop };
+        // The render's own numbers, of a seed that is not the render's.
+        let sources: Vec<N> = (0..SAMPLES).map(|index| N::new(!job.seed, index)).collect();
         for round in rounds {
             view.sandbox().begin_tile(round);
             let places: Vec<_> = (0..ROUND).map(|i| self.place(round * u64::from(ROUND) + u64::from(i))).collect();
-            // The render's own numbers, of a seed that is not the render's.
-            let sources: Vec<N> = (0..SAMPLES).map(|index| N::new(!job.seed, index)).collect();
             for &place in &places {
                 for source in &sources {
                     let (mut numbers, raster) = begun(source, place);
@@ -192,7 +181,7 @@ impl Pilot {
                 break;
             }
         }
-        Some(Part { evidence: kept.evidence, spent: timing.spent, cpu: clock.elapsed() })
+        Some(Part { evidence: kept.evidence, spent: timing.spent })
     }
 
     /// The pixel that is looked at in turn: everywhere alike, by the additive recurrence of the plastic number (Roberts 2018).
