@@ -83,7 +83,7 @@ pub fn card(choice: &Choice) -> Vec<String> {
     ];
     for worth in joins {
         let saved = match worth.error_without {
-            Some(times) => format!("without it the error were {times:.2} times as large"),
+            Some(times) => format!("without it the error would be {times:.2} times as large"),
             None => "without it light would be missing".to_owned(),
         };
         lines.push(format!("{:<11} {:>4} of the time; {saved}", worth.join.replace('_', " "), share(worth.cost)));
