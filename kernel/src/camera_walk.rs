@@ -8,8 +8,8 @@ use crate::{
     light::{Illumination, Light},
     point::{Place, Point, Ray, Segment},
     real::{Real, Vec2, Vec3},
-    roulette::survive,
-    sampler::{DIMENSIONS_PER_VERTEX, Sampler, Walk, start, vertex},
+    roulette::{casts, survive},
+    sampler::{DIMENSIONS_PER_VERTEX, Sampler, Walk, shadow, start, vertex},
     scene::Scene,
     spectrum::Spectrum,
     strategy::Strategy,
@@ -45,6 +45,8 @@ struct Lit<I> {
     id: I,
     chance: Chance,
     sampled: Illumination,
+    /// Of its random numbers, the first.
+    dimension: u32,
 }
 
 /// Traces one camera walk and joins each of its vertices to the lights; returns how many it left in `store`.
@@ -173,9 +175,7 @@ impl<'s, S: Scene, P: Sampler, F: Film> CameraWalk<'_, 's, S, P, F> {
         let count = if vertex.joins() { self.strategy.techniques.next_event as u32 } else { 0 };
         let mut last = None;
         for turn in 0..count {
-            self.sampler.seek(Walk::Camera, dimension.wrapping_add(turn.wrapping_mul(NEXT_EVENT_STRIDE)) + vertex::ENDPOINT);
-            let (pair, u) = (self.sampler.next_pair(), self.sampler.next());
-            last = self.picked(&vertex.point, u, pair);
+            last = self.picked(&vertex.point, dimension.wrapping_add(turn.wrapping_mul(NEXT_EVENT_STRIDE)) + vertex::ENDPOINT);
             if turn + 1 < count
                 && let Some(lit) = &last
                 && let Some(scatter) = vertex.scatter(lit.sampled.direction)
@@ -192,19 +192,21 @@ impl<'s, S: Scene, P: Sampler, F: Film> CameraWalk<'_, 's, S, P, F> {
         bounce
     }
 
-    fn picked(&self, point: &Point, u: Real, pair: [Real; 2]) -> Option<Lit<S::LightId>> {
+    fn picked(&mut self, point: &Point, dimension: u32) -> Option<Lit<S::LightId>> {
+        self.sampler.seek(Walk::Camera, dimension);
+        let (pair, u) = (self.sampler.next_pair(), self.sampler.next());
         let (id, chance) = self.scene.pick_light(Some(point), u)?;
         let sampled = self.scene.light(id).illuminate(point, pair)?;
-        Some(Lit { id, chance, sampled })
+        Some(Lit { id, chance, sampled, dimension })
     }
 
     /// s = 1: the vertex lit by one point of a light.
     fn next_event<B: Bsdf>(&mut self, vertex: &Vertex<B>, end: &End<F::Rivals>, lit: &Lit<S::LightId>, scatter: &Scatter) {
         let Strategy { techniques, heuristic, .. } = *self.strategy;
-        let (Lit { id, chance, sampled }, point) = (lit, &vertex.point);
+        let (Lit { id, chance, sampled, dimension }, point) = (lit, &vertex.point);
         let per_sample = techniques.next_event as Real * chance.0;
         let value = end.throughput * scatter.value * sampled.weight / per_sample;
-        if value.is_black() || !self.scene.unoccluded(point, &sampled.point, Segment::Inner) {
+        if value.is_black() {
             return;
         }
         let exit = sampled.exit;
@@ -219,7 +221,14 @@ impl<'s, S: Scene, P: Sampler, F: Film> CameraWalk<'_, 's, S, P, F> {
             let across = f64::from(exit.spread.value()) * to_vertex;
             others = others.and(end.side.sum(heuristic, across, f64::from(scatter.pdf_rev.0)).times(heuristic.of(made)));
         }
-        self.film.weighed(own, others);
-        self.film.add(Contribution { value, weight: share(own, others.total()) as Real, technique: Technique { s: 1, t: end.length + 1 } });
+        let technique = Technique { s: 1, t: end.length + 1 };
+        let mut contribution = Contribution { value, weight: share(own, others.total()) as Real, technique };
+        let number = (Walk::Camera, dimension.wrapping_add(shadow::JOIN));
+        if casts(&mut contribution, self.film.threshold(), self.sampler, number)
+            && self.scene.unoccluded(point, &sampled.point, Segment::Inner)
+        {
+            self.film.weighed(own, others);
+            self.film.add(contribution);
+        }
     }
 }

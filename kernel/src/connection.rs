@@ -9,6 +9,8 @@ use crate::{
     math::floor,
     point::{Ray, Segment},
     real::{Real, Vec3},
+    roulette::casts,
+    sampler::{Sampler, Walk, shadow},
     scene::Scene,
     strategy::Strategy,
     technique::Technique,
@@ -56,13 +58,14 @@ impl Ration {
     }
 }
 
-/// Connects the two walks' vertices: all of them, or as many as they are rationed to.
+/// Connects the two walks' vertices: all of them, or as many as they are rationed to. Their rays' random numbers begin at the dimension.
 pub(crate) fn connect<'s, S: Scene, F: Film>(
     scene: &S,
     strategy: &Strategy,
     joined_length: u32,
     ration: Option<Ration>,
     (camera_path, light_path): (Path<'_, 's, S, F::Rivals>, Path<'_, 's, S, F::Rivals>),
+    (sampler, dimension): (&mut impl Sampler, u32),
     film: &mut F,
 ) {
     let mut number = 0;
@@ -82,7 +85,8 @@ pub(crate) fn connect<'s, S: Scene, F: Film>(
             for (near, row) in near.iter().flatten().zip(&block) {
                 for (far, pair) in far.iter().flatten().zip(row) {
                     if let Some(pair) = pair {
-                        join(scene, strategy, near, far, pair, film);
+                        let of_pair = near.length.wrapping_mul(shadow::PAIR_VERTEX).wrapping_add(far.length);
+                        join(scene, strategy, (near, far), pair, (sampler, dimension.wrapping_add(of_pair)), film);
                     }
                 }
             }
@@ -145,15 +149,15 @@ fn ask<B: Bsdf>(vertex: &Vertex<B>, end: usize, block: &mut Block, place: impl F
 fn join<'s, S: Scene, F: Film>(
     scene: &S,
     strategy: &Strategy,
-    near: &WalkVertex<'s, S, F::Rivals>,
-    far: &WalkVertex<'s, S, F::Rivals>,
+    (near, far): (&WalkVertex<'s, S, F::Rivals>, &WalkVertex<'s, S, F::Rivals>),
     pair: &Pair,
+    (sampler, dimension): (&mut impl Sampler, u32),
     film: &mut F,
 ) {
     let Strategy { techniques, heuristic, .. } = *strategy;
     let ([here, there], points) = (&pair.scatters, (&near.vertex.point, &far.vertex.point));
     let value = near.throughput * here.value * (there.value * far.throughput) / (pair.squared_distance * techniques.connection as Real);
-    if value.is_black() || !Ray::keeps_sides(points.0, points.1) || !scene.unoccluded(points.0, points.1, Segment::Inner) {
+    if value.is_black() || !Ray::keeps_sides(points.0, points.1) {
         return;
     }
     let (there_per, here_per) = conversions(points.0, points.1, pair.directions[NEAR]);
@@ -162,10 +166,12 @@ fn join<'s, S: Scene, F: Film>(
     let made_less = far.side.sum(heuristic, to_far, f64::from(there.pdf_rev.0));
     let others = made_less.and(near.side.sum(heuristic, to_near, f64::from(here.pdf_rev.0)));
     let own = heuristic.of(techniques.connection);
-    film.weighed(own, others);
-    film.add(Contribution {
-        value,
-        weight: share(own, others.total()) as Real,
-        technique: Technique { s: far.length + 1, t: near.length + 1 },
-    });
+    let technique = Technique { s: far.length + 1, t: near.length + 1 };
+    let mut contribution = Contribution { value, weight: share(own, others.total()) as Real, technique };
+    if casts(&mut contribution, film.threshold(), sampler, (Walk::Camera, dimension))
+        && scene.unoccluded(points.0, points.1, Segment::Inner)
+    {
+        film.weighed(own, others);
+        film.add(contribution);
+    }
 }

@@ -29,6 +29,20 @@ pub trait Film {
         let _ = (own, others);
     }
 
+    /// δ: what contributes less than this to the pixel of the camera walk under way, value times weight, plays roulette for its shadow
+    /// ray. 0 casts every ray. The mean is the same for any δ that was known before this sample.
+    #[inline(always)]
+    fn threshold(&self) -> Real {
+        0.0
+    }
+
+    /// The same for a splat at that raster position, which like a splat's value is per call and over the whole window.
+    #[inline(always)]
+    fn splat_threshold(&self, raster: Vec2) -> Real {
+        let _ = raster;
+        0.0
+    }
+
     /// From the camera walk under way, to the raster position it started at.
     fn add(&mut self, contribution: Contribution);
 

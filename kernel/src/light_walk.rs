@@ -9,8 +9,8 @@ use crate::{
     math::dot,
     point::{Place, Point, Ray, Segment},
     real::{Real, Vec3},
-    roulette::survive,
-    sampler::{DIMENSIONS_PER_VERTEX, Sampler, Walk, start, vertex},
+    roulette::{casts, survive},
+    sampler::{DIMENSIONS_PER_VERTEX, Sampler, Walk, shadow, start, vertex},
     scene::Scene,
     spectrum::Spectrum,
     strategy::Strategy,
@@ -135,7 +135,7 @@ impl<'s, S: Scene, P: Sampler, F: Film> LightWalk<'_, 's, S, P, F> {
         // Light from infinitely far away is told by the line along which it arrives.
         let at = if point.place == Place::Distant { Point::distant(seen.point.position, point.normal) } else { *point };
         let exit = light.emitted(&at, -seen.direction);
-        if exit.radiance.is_black() || !self.lens_sees(&seen, point) {
+        if exit.radiance.is_black() {
             return;
         }
         let made_by_light = f64::from(chance) * f64::from(exit.end.value());
@@ -145,15 +145,8 @@ impl<'s, S: Scene, P: Sampler, F: Film> LightWalk<'_, 's, S, P, F> {
         let by_camera = heuristic.of(techniques.light_hit * made_by_camera / made_by_light);
         let others = F::Rivals::NONE.with(Join::LightHit, by_camera).with(Join::LensHit, self.lens_hit_share(&seen, on_lens));
         let own = heuristic.of(techniques.lens_splat);
-        self.film.weighed(own, others);
-        self.film.splat(
-            seen.raster,
-            Contribution {
-                value: exit.radiance * seen.weight * ((made_by_camera / (made_by_light * techniques.lens_splat)) as Real),
-                weight: share(own, others.total()) as Real,
-                technique: Technique { s: 1, t: 1 },
-            },
-        );
+        let value = exit.radiance * seen.weight * ((made_by_camera / (made_by_light * techniques.lens_splat)) as Real);
+        self.show(&seen, point, start::SPLAT, (own, others), value, Technique { s: 1, t: 1 });
     }
 
     /// t = 1, a vertex of the walk shown to the lens, and where the walk goes on; both are asked for at once.
@@ -184,9 +177,6 @@ impl<'s, S: Scene, P: Sampler, F: Film> LightWalk<'_, 's, S, P, F> {
     /// t = 1: a vertex of the walk, shown to the lens.
     fn splat(&mut self, point: &Point, length: u32, side: &Side<F::Rivals>, throughput: Spectrum, seen: &Seen, scatter: &Scatter) {
         let Strategy { techniques, heuristic, .. } = *self.strategy;
-        if !self.lens_sees(seen, point) {
-            return;
-        }
         let spread = f64::from(seen.spread.value());
         let (to_vertex, to_lens) = conversions(&seen.point, point, seen.direction);
         let made_by_camera = spread * to_vertex;
@@ -199,15 +189,9 @@ impl<'s, S: Scene, P: Sampler, F: Film> LightWalk<'_, 's, S, P, F> {
         let by_camera = side.sum(heuristic, made_by_camera, f64::from(scatter.pdf_rev.0));
         let others = by_camera.with(Join::LensHit, self.lens_hit_share(seen, on_lens));
         let own = heuristic.of(techniques.lens_splat);
-        self.film.weighed(own, others);
-        self.film.splat(
-            seen.raster,
-            Contribution {
-                value: throughput * scatter.value * seen.weight * ((importance / techniques.lens_splat) as Real),
-                weight: share(own, others.total()) as Real,
-                technique: Technique { s: length + 1, t: 1 },
-            },
-        );
+        let value = throughput * scatter.value * seen.weight * ((importance / techniques.lens_splat) as Real);
+        let dimension = length.wrapping_mul(DIMENSIONS_PER_VERTEX) + vertex::ENDPOINT;
+        self.show(seen, point, dimension, (own, others), value, Technique { s: length + 1, t: 1 });
     }
 
     /// What landing on the lens adds to a splat's weight, if `on_lens` is how densely the walk would have landed there.
@@ -216,6 +200,19 @@ impl<'s, S: Scene, P: Sampler, F: Film> LightWalk<'_, 's, S, P, F> {
             self.strategy.heuristic.of(self.strategy.techniques.lens_hit * on_lens / f64::from(seen.end.value()))
         } else {
             0.0
+        }
+    }
+
+    /// Splats what `point` brings along this ray if the lens sees it and the ray is worth casting; `dimension` is the first of the join's.
+    fn show(&mut self, seen: &Seen, point: &Point, dimension: u32, (own, others): (f64, F::Rivals), value: Spectrum, technique: Technique) {
+        let mut contribution = Contribution { value, weight: share(own, others.total()) as Real, technique };
+        let number = (Walk::Light, self.dimension.wrapping_add(dimension).wrapping_add(shadow::JOIN));
+        if !value.is_black()
+            && casts(&mut contribution, self.film.splat_threshold(seen.raster), self.sampler, number)
+            && self.lens_sees(seen, point)
+        {
+            self.film.weighed(own, others);
+            self.film.splat(seen.raster, contribution);
         }
     }
 
@@ -238,9 +235,6 @@ impl<'s, S: Scene, P: Sampler, F: Film> LightWalk<'_, 's, S, P, F> {
             return;
         }
         let Some(seen) = self.scene.camera().hit(previous.leave(direction), direction, Real::INFINITY) else { return };
-        if !self.lens_sees(&seen, previous) {
-            return;
-        }
         let lens = &seen.point;
         let (end, spread) = (f64::from(seen.end.value()), f64::from(seen.spread.value()));
         let cos = f64::from(dot(lens.normal, direction).abs());
@@ -248,14 +242,8 @@ impl<'s, S: Scene, P: Sampler, F: Film> LightWalk<'_, 's, S, P, F> {
         let at_lens = side.advance(heuristic, &step(previous, lens, direction, way, (Join::LensSplat, techniques.lens_splat)));
         let others = at_lens.sum(heuristic, end, spread);
         let own = heuristic.of(techniques.lens_hit);
-        self.film.weighed(own, others);
-        self.film.splat(
-            seen.raster,
-            Contribution {
-                value: throughput * seen.weight * ((end * spread / (cos * techniques.lens_hit)) as Real),
-                weight: share(own, others.total()) as Real,
-                technique: Technique { s: length + 1, t: 0 },
-            },
-        );
+        let value = throughput * seen.weight * ((end * spread / (cos * techniques.lens_hit)) as Real);
+        let dimension = length.wrapping_mul(DIMENSIONS_PER_VERTEX) + vertex::LENS_HIT;
+        self.show(&seen, previous, dimension, (own, others), value, Technique { s: length + 1, t: 0 });
     }
 }

@@ -7,7 +7,7 @@ use crate::{
     light_walk::light_walk,
     math::floor,
     real::{Real, Vec2},
-    sampler::{Sampler, Walk, start},
+    sampler::{Sampler, Walk, shadow, start},
     scene::Scene,
     strategy::Strategy,
     technique::{Join, Techniques},
@@ -35,7 +35,8 @@ pub fn sample<'s, S: Scene, F: Film>(
         let lit = light_walk(scene, strategy, joined_length, number, sampler, light_path, film);
         if seen > 0 && lit > 0 {
             let ration = ration(techniques, number, sampler);
-            connect(scene, strategy, joined_length, ration, (&camera_path[..seen], &light_path[..lit]), film);
+            let dimension = shadow::PAIR.wrapping_add(number.wrapping_mul(shadow::PAIR_WALK));
+            connect(scene, strategy, joined_length, ration, (&camera_path[..seen], &light_path[..lit]), (sampler, dimension), film);
         }
     }
 }

@@ -50,10 +50,24 @@ pub(crate) mod start {
 pub(crate) mod vertex {
     /// Of a camera walk: next event's point, two, and its choice of the light. Of a light walk: the lens, two.
     pub const ENDPOINT: u32 = 0;
+    /// Of a light walk, landing on the lens: of its own it has none but its shadow ray's.
+    pub const LENS_HIT: u32 = 1;
     /// Russian roulette.
     pub const ROULETTE: u32 = 3;
     /// The BSDF, three.
     pub const BSDF: u32 = 4;
+}
+
+/// The dimensions of roulette for shadow rays: beyond all others, so that a sampler has no stratified points to spend on them.
+pub(crate) mod shadow {
+    /// What lies between a join's own dimensions and this one of its ray.
+    pub const JOIN: u32 = 1 << 31;
+    /// Of the camera walk's vertices and the first light walk's: the first.
+    pub const PAIR: u32 = JOIN | 1 << 30;
+    /// From one light walk's to the next one's.
+    pub const PAIR_WALK: u32 = 1 << 20;
+    /// From one vertex of the camera walk to the next; each vertex of the light walk has one.
+    pub const PAIR_VERTEX: u32 = 1 << 10;
 }
 
 /// Independent numbers: SplitMix64 (Steele, Lea & Flood 2014) as a function of a counter, so that any dimension of any sample is one hash away.

@@ -1,10 +1,13 @@
 //! What one unit of work adds to the film, before it is its turn.
 
-use bidir_kernel::{Contribution, Together, Vec2};
+use std::sync::Arc;
+
+use bidir_kernel::{Contribution, Real, Together, Vec2};
 
 use super::{
     filter::{Profile, Taps},
     layout::{Layout, Rect},
+    thresholds::Thresholds,
     unit::Unit,
 };
 
@@ -46,12 +49,16 @@ pub struct TileBuffer {
     pub(super) samples: u64,
     /// Contributions that were not finite, or came to no place on the film.
     pub(super) refused: u64,
+    /// For the roulette of shadow rays, if there is one.
+    pub(super) thresholds: Option<Arc<Thresholds>>,
     origin: [f64; 2],
     size: [f64; 2],
     band_height: i32,
     profile: Profile,
     taps: [Taps; 2],
     raster: [f64; 2],
+    /// Of the pixel under way.
+    threshold: Real,
     total: [f64; 3],
 }
 
@@ -64,12 +71,14 @@ impl TileBuffer {
             splats: vec![Vec::new(); layout.bands()],
             samples: 0,
             refused: 0,
+            thresholds: None,
             origin: [f64::from(layout.crop.x), f64::from(layout.crop.y)],
             size: [f64::from(layout.crop.width), f64::from(layout.crop.height)],
             band_height: layout.band_height as i32,
             profile: layout.profile,
             taps: [Taps::EMPTY; 2],
             raster: [0.0; 2],
+            threshold: 0.0,
             total: [0.0; 3],
         };
         buffer.reset(unit);
@@ -110,6 +119,7 @@ impl Exposure for TileBuffer {
         for (axis, value) in [f64::from(raster.x), f64::from(raster.y)].into_iter().enumerate() {
             self.raster[axis] = (value - self.origin[axis]).max(start[axis]).min(end[axis].next_down());
         }
+        self.threshold = self.thresholds.as_ref().map_or(0.0, |all| all.at(self.raster[0] as usize, self.raster[1] as usize));
         self.total = [0.0; 3];
     }
 
@@ -138,6 +148,18 @@ impl Exposure for TileBuffer {
 
 impl bidir_kernel::Film for TileBuffer {
     type Rivals = Together;
+
+    #[inline]
+    fn threshold(&self) -> Real {
+        self.threshold
+    }
+
+    #[inline]
+    fn splat_threshold(&self, raster: Vec2) -> Real {
+        let Some(all) = &self.thresholds else { return 0.0 };
+        let (x, y) = (f64::from(raster.x) - self.origin[0], f64::from(raster.y) - self.origin[1]);
+        if x >= 0.0 && x < self.size[0] && y >= 0.0 { all.splat_at(x as usize, y as usize) } else { 0.0 }
+    }
 
     #[inline]
     fn add(&mut self, contribution: Contribution) {

@@ -40,6 +40,7 @@ mod layout;
 pub mod picture;
 mod pyramid;
 mod sequencer;
+mod thresholds;
 mod unit;
 
 use std::sync::{Arc, Mutex};
@@ -54,6 +55,7 @@ pub use unit::{TILE, Unit, WINDOW};
 use band::Band;
 use layout::Layout;
 use sequencer::Sequencer;
+use thresholds::Thresholds;
 use unit::{Dispatch, lock};
 
 /// What render threads share: units to claim, and a place to commit them.
@@ -67,6 +69,12 @@ pub trait Store: Sync {
 
     /// Adds a claimed buffer to the film when its turn comes. Every claimed one must be committed: those after a gap never arrive.
     fn commit(&self, buffer: Self::Buffer);
+
+    /// From here on, what contributes less than that share of what a pixel holds now plays roulette for its shadow ray; 0 ends that.
+    /// To be called while no thread holds a buffer. A store that has no use for it casts every ray.
+    fn spare(&self, share: f64) {
+        let _ = share;
+    }
 
     /// Ends the render for every thread, where a unit cannot be finished. What was committed before that unit stays.
     fn abandon(&self);
@@ -85,6 +93,7 @@ pub struct Film {
     bands: Vec<Strip>,
     pool: Mutex<Vec<TileBuffer>>,
     tally: Mutex<Tally>,
+    thresholds: Mutex<Option<Arc<Thresholds>>>,
 }
 
 #[derive(Debug)]
@@ -111,6 +120,7 @@ impl Film {
             bands: (0..layout.bands()).map(strip).collect(),
             pool: Mutex::default(),
             tally: Mutex::default(),
+            thresholds: Mutex::default(),
             layout,
         })
     }
@@ -143,13 +153,20 @@ impl Store for Film {
     fn claim(&self, end: u32) -> Option<TileBuffer> {
         let unit = self.dispatch.claim(end)?;
         let recycled = lock(&self.pool).pop();
-        Some(match recycled {
+        let mut buffer = match recycled {
             Some(mut buffer) => {
                 buffer.reset(unit);
                 buffer
             }
             None => TileBuffer::new(&self.layout, unit),
-        })
+        };
+        buffer.thresholds.clone_from(&lock(&self.thresholds));
+        Some(buffer)
+    }
+
+    fn spare(&self, share: f64) {
+        let thresholds = self.thresholds(share).map(Arc::new);
+        *lock(&self.thresholds) = thresholds;
     }
 
     fn commit(&self, buffer: TileBuffer) {

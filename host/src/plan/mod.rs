@@ -47,6 +47,9 @@ pub struct Stage {
     pub lens_hit: f64,
     /// How techniques share a path.
     pub heuristic: Sharing,
+    /// What contributes less than this share of its pixel's mean plays roulette for its shadow ray; 0 casts every ray.
+    #[serde(default)]
+    pub shadow_roulette: f64,
 }
 
 /// Names of the heuristics.
@@ -107,7 +110,7 @@ impl Stage {
     /// These techniques from the first sample on, by the balance heuristic.
     pub const fn of(techniques: &Techniques) -> Self {
         let Techniques { light_hit, next_event, connection, lens_splat, lens_hit } = *techniques;
-        Self { from: 0, light_hit, next_event, connection, lens_splat, lens_hit, heuristic: Sharing::Balance }
+        Self { from: 0, light_hit, next_event, connection, lens_splat, lens_hit, heuristic: Sharing::Balance, shadow_roulette: 0.0 }
     }
 
     /// Its counts.
@@ -146,6 +149,9 @@ impl Stage {
         let counts = [("connection", self.connection), ("lens_splat", self.lens_splat), ("lens_hit", self.lens_hit)];
         if let Some((name, count)) = counts.into_iter().find(|(_, count)| !(0.0..=MOST).contains(count)) {
             return Some((format!("{name} is {count}"), "make it a number up to 1024"));
+        }
+        if !(self.shadow_roulette.is_finite() && self.shadow_roulette >= 0.0) {
+            return Some((format!("shadow_roulette is {}", self.shadow_roulette), "make it 0, or a small share of a pixel's mean"));
         }
         let shown = [("lens_splat", self.lens_splat), ("lens_hit", self.lens_hit)];
         let (name, count) = shown.into_iter().find(|(_, count)| *count != 0.0 && *count != walks)?;

@@ -22,8 +22,25 @@ use crate::{
 pub struct Leg {
     /// How samples are taken.
     pub strategy: Strategy,
+    /// What contributes less than this share of its pixel's mean plays roulette for its shadow ray.
+    pub shadow_roulette: f64,
+    /// The first sample of every pixel that is taken so.
+    pub from: u32,
     /// The first sample of every pixel that is not taken so.
     pub end: u32,
+}
+
+impl Leg {
+    /// The job's own strategy from beginning to end.
+    fn of(job: &Job) -> Self {
+        Self { strategy: job.strategy, shadow_roulette: 0.0, from: 0, end: u32::MAX }
+    }
+
+    /// A plan's stage, without an end.
+    fn on(stage: &Stage, integrator: &Integrator) -> Self {
+        let Stage { shadow_roulette, from, .. } = *stage;
+        Self { strategy: stage.strategy(integrator), shadow_roulette, from, end: u32::MAX }
+    }
 }
 
 /// Says between passes what comes next.
@@ -38,7 +55,7 @@ pub struct Always;
 
 impl Director for Always {
     fn next(&mut self, _: &Scene, job: &Job, _: &Status) -> Leg {
-        Leg { strategy: job.strategy, end: u32::MAX }
+        Leg::of(job)
     }
 }
 
@@ -54,8 +71,8 @@ pub struct Given {
 impl Director for Given {
     fn next(&mut self, _: &Scene, job: &Job, status: &Status) -> Leg {
         match self.plan.at(status.samples) {
-            Some((stage, end)) => Leg { strategy: stage.strategy(&self.integrator), end },
-            None => Leg { strategy: job.strategy, end: u32::MAX },
+            Some((stage, end)) => Leg { end, ..Leg::on(stage, &self.integrator) },
+            None => Leg::of(job),
         }
     }
 }
@@ -164,6 +181,6 @@ impl Director for Auto {
             self.again = status.elapsed.mul_f64(AGAIN);
         }
         let stage = self.plan.last().copied().unwrap_or(Stage::of(&job.strategy.techniques));
-        Leg { strategy: stage.strategy(&self.integrator), end: u32::MAX }
+        Leg::on(&stage, &self.integrator)
     }
 }

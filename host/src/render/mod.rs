@@ -29,6 +29,7 @@ pub use numbers::Numbers;
 pub use passes::pass_end;
 
 use numbers::{Apart, Sobol, Source};
+use passes::{looks_back, next_look};
 
 /// The longest path that stored light vertices are kept for where the scene sets no limit; longer ones are left to s = 0 and s = 1.
 pub const LONGEST_JOINED: u32 = 64;
@@ -111,7 +112,11 @@ pub fn directed<S: Store>(
         let leg = director.next(scene, job, &status);
         status.elapsed = start.elapsed();
         let job = &Job { strategy: leg.strategy, ..*job };
-        let end = pass_end(status.samples).min(last).min(leg.end).min(affordable(&status, job.target, pace));
+        if looks_back(status.samples, leg.from) {
+            film.spare(leg.shadow_roulette);
+        }
+        let unread = if leg.shadow_roulette > 0.0 { next_look(status.samples) } else { u32::MAX };
+        let end = pass_end(status.samples).min(last).min(leg.end).min(unread).min(affordable(&status, job.target, pace));
         let before = (status.samples, status.elapsed);
         let Some(claimed) = run(scene, film, job, end, Some(interrupt), &mut status) else {
             status.failed = true;

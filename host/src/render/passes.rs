@@ -6,6 +6,17 @@ pub fn pass_end(samples: u32) -> u32 {
     if samples < 32 { (samples + 1).next_power_of_two().max(1) } else { samples.saturating_add(samples / 4) }
 }
 
+/// Whether the sample of that number, and those up to [`next_look`], are the first of their stage to know what the film holds before them.
+/// Which samples know of which is so told by their numbers and the plan, wherever passes end.
+pub fn looks_back(sample: u32, stage: u32) -> bool {
+    sample == stage || sample.is_power_of_two()
+}
+
+/// The next sample that [`looks_back`], if its stage still runs.
+pub fn next_look(sample: u32) -> u32 {
+    sample.checked_add(1).and_then(u32::checked_next_power_of_two).unwrap_or(u32::MAX)
+}
+
 #[cfg(test)]
 mod tests {
     use super::pass_end;
