@@ -19,6 +19,7 @@ mod random;
 mod references;
 mod sandbox;
 mod self_hits;
+mod shadow_roulette;
 mod techniques;
 
 use bidir_tests::{estimators, pictures, scenes, statistics};

@@ -206,7 +206,8 @@ impl<'s, S: Scene, P: Sampler, F: Film> CameraWalk<'_, 's, S, P, F> {
         let (Lit { id, chance, sampled, dimension }, point) = (lit, &vertex.point);
         let per_sample = techniques.next_event as Real * chance.0;
         let value = end.throughput * scatter.value * sampled.weight / per_sample;
-        if value.is_black() {
+        let threshold = self.film.threshold();
+        if value.is_black() || (threshold <= 0.0 && !self.scene.unoccluded(point, &sampled.point, Segment::Inner)) {
             return;
         }
         let exit = sampled.exit;
@@ -224,11 +225,12 @@ impl<'s, S: Scene, P: Sampler, F: Film> CameraWalk<'_, 's, S, P, F> {
         let technique = Technique { s: 1, t: end.length + 1 };
         let mut contribution = Contribution { value, weight: share(own, others.total()) as Real, technique };
         let number = (Walk::Camera, dimension.wrapping_add(shadow::JOIN));
-        if casts(&mut contribution, self.film.threshold(), self.sampler, number)
-            && self.scene.unoccluded(point, &sampled.point, Segment::Inner)
+        if threshold > 0.0
+            && !(casts(&mut contribution, threshold, self.sampler, number) && self.scene.unoccluded(point, &sampled.point, Segment::Inner))
         {
-            self.film.weighed(own, others);
-            self.film.add(contribution);
+            return;
         }
+        self.film.weighed(own, others);
+        self.film.add(contribution);
     }
 }

@@ -157,7 +157,9 @@ fn join<'s, S: Scene, F: Film>(
     let Strategy { techniques, heuristic, .. } = *strategy;
     let ([here, there], points) = (&pair.scatters, (&near.vertex.point, &far.vertex.point));
     let value = near.throughput * here.value * (there.value * far.throughput) / (pair.squared_distance * techniques.connection as Real);
-    if value.is_black() || !Ray::keeps_sides(points.0, points.1) {
+    let threshold = film.threshold();
+    let unoccluded = || scene.unoccluded(points.0, points.1, Segment::Inner);
+    if value.is_black() || !Ray::keeps_sides(points.0, points.1) || (threshold <= 0.0 && !unoccluded()) {
         return;
     }
     let (there_per, here_per) = conversions(points.0, points.1, pair.directions[NEAR]);
@@ -168,10 +170,9 @@ fn join<'s, S: Scene, F: Film>(
     let own = heuristic.of(techniques.connection);
     let technique = Technique { s: far.length + 1, t: near.length + 1 };
     let mut contribution = Contribution { value, weight: share(own, others.total()) as Real, technique };
-    if casts(&mut contribution, film.threshold(), sampler, (Walk::Camera, dimension))
-        && scene.unoccluded(points.0, points.1, Segment::Inner)
-    {
-        film.weighed(own, others);
-        film.add(contribution);
+    if threshold > 0.0 && !(casts(&mut contribution, threshold, sampler, (Walk::Camera, dimension)) && unoccluded()) {
+        return;
     }
+    film.weighed(own, others);
+    film.add(contribution);
 }

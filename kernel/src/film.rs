@@ -36,7 +36,7 @@ pub trait Film {
         0.0
     }
 
-    /// The same for a splat at that raster position, which like a splat's value is per call and over the whole window.
+    /// The same for a splat at that raster position.
     #[inline(always)]
     fn splat_threshold(&self, raster: Vec2) -> Real {
         let _ = raster;

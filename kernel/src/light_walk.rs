@@ -135,7 +135,7 @@ impl<'s, S: Scene, P: Sampler, F: Film> LightWalk<'_, 's, S, P, F> {
         // Light from infinitely far away is told by the line along which it arrives.
         let at = if point.place == Place::Distant { Point::distant(seen.point.position, point.normal) } else { *point };
         let exit = light.emitted(&at, -seen.direction);
-        if exit.radiance.is_black() {
+        if exit.radiance.is_black() || self.hidden(&seen, point) {
             return;
         }
         let made_by_light = f64::from(chance) * f64::from(exit.end.value());
@@ -146,7 +146,7 @@ impl<'s, S: Scene, P: Sampler, F: Film> LightWalk<'_, 's, S, P, F> {
         let others = F::Rivals::NONE.with(Join::LightHit, by_camera).with(Join::LensHit, self.lens_hit_share(&seen, on_lens));
         let own = heuristic.of(techniques.lens_splat);
         let value = exit.radiance * seen.weight * ((made_by_camera / (made_by_light * techniques.lens_splat)) as Real);
-        self.show(&seen, point, start::SPLAT, (own, others), value, Technique { s: 1, t: 1 });
+        self.splat_seen((&seen, point), start::SPLAT, (own, others), value, Technique { s: 1, t: 1 });
     }
 
     /// t = 1, a vertex of the walk shown to the lens, and where the walk goes on; both are asked for at once.
@@ -177,6 +177,9 @@ impl<'s, S: Scene, P: Sampler, F: Film> LightWalk<'_, 's, S, P, F> {
     /// t = 1: a vertex of the walk, shown to the lens.
     fn splat(&mut self, point: &Point, length: u32, side: &Side<F::Rivals>, throughput: Spectrum, seen: &Seen, scatter: &Scatter) {
         let Strategy { techniques, heuristic, .. } = *self.strategy;
+        if self.hidden(seen, point) {
+            return;
+        }
         let spread = f64::from(seen.spread.value());
         let (to_vertex, to_lens) = conversions(&seen.point, point, seen.direction);
         let made_by_camera = spread * to_vertex;
@@ -191,7 +194,7 @@ impl<'s, S: Scene, P: Sampler, F: Film> LightWalk<'_, 's, S, P, F> {
         let own = heuristic.of(techniques.lens_splat);
         let value = throughput * scatter.value * seen.weight * ((importance / techniques.lens_splat) as Real);
         let dimension = length.wrapping_mul(DIMENSIONS_PER_VERTEX) + vertex::ENDPOINT;
-        self.show(seen, point, dimension, (own, others), value, Technique { s: length + 1, t: 1 });
+        self.splat_seen((seen, point), dimension, (own, others), value, Technique { s: length + 1, t: 1 });
     }
 
     /// What landing on the lens adds to a splat's weight, if `on_lens` is how densely the walk would have landed there.
@@ -203,17 +206,28 @@ impl<'s, S: Scene, P: Sampler, F: Film> LightWalk<'_, 's, S, P, F> {
         }
     }
 
-    /// Splats what `point` brings along this ray if the lens sees it and the ray is worth casting; `dimension` is the first of the join's.
-    fn show(&mut self, seen: &Seen, point: &Point, dimension: u32, (own, others): (f64, F::Rivals), value: Spectrum, technique: Technique) {
+    /// Whether the lens does not see `point` along this ray, if that is asked before the weights: see [`casts`].
+    fn hidden(&self, seen: &Seen, point: &Point) -> bool {
+        self.film.splat_threshold(seen.raster) <= 0.0 && !self.lens_sees(seen, point)
+    }
+
+    /// Splats what `point`, which is not [`Self::hidden`], brings along this ray; `dimension` is the first of the join's.
+    fn splat_seen(
+        &mut self,
+        (seen, point): (&Seen, &Point),
+        dimension: u32,
+        (own, others): (f64, F::Rivals),
+        value: Spectrum,
+        technique: Technique,
+    ) {
         let mut contribution = Contribution { value, weight: share(own, others.total()) as Real, technique };
+        let threshold = self.film.splat_threshold(seen.raster);
         let number = (Walk::Light, self.dimension.wrapping_add(dimension).wrapping_add(shadow::JOIN));
-        if !value.is_black()
-            && casts(&mut contribution, self.film.splat_threshold(seen.raster), self.sampler, number)
-            && self.lens_sees(seen, point)
-        {
-            self.film.weighed(own, others);
-            self.film.splat(seen.raster, contribution);
+        if threshold > 0.0 && !(casts(&mut contribution, threshold, self.sampler, number) && self.lens_sees(seen, point)) {
+            return;
         }
+        self.film.weighed(own, others);
+        self.film.splat(seen.raster, contribution);
     }
 
     /// Whether the lens sees `point` along this ray: within its clipping distances, and nothing in between.
@@ -235,6 +249,9 @@ impl<'s, S: Scene, P: Sampler, F: Film> LightWalk<'_, 's, S, P, F> {
             return;
         }
         let Some(seen) = self.scene.camera().hit(previous.leave(direction), direction, Real::INFINITY) else { return };
+        if self.hidden(&seen, previous) {
+            return;
+        }
         let lens = &seen.point;
         let (end, spread) = (f64::from(seen.end.value()), f64::from(seen.spread.value()));
         let cos = f64::from(dot(lens.normal, direction).abs());
@@ -244,6 +261,6 @@ impl<'s, S: Scene, P: Sampler, F: Film> LightWalk<'_, 's, S, P, F> {
         let own = heuristic.of(techniques.lens_hit);
         let value = throughput * seen.weight * ((end * spread / (cos * techniques.lens_hit)) as Real);
         let dimension = length.wrapping_mul(DIMENSIONS_PER_VERTEX) + vertex::LENS_HIT;
-        self.show(&seen, previous, dimension, (own, others), value, Technique { s: length + 1, t: 0 });
+        self.splat_seen((&seen, previous), dimension, (own, others), value, Technique { s: length + 1, t: 0 });
     }
 }

@@ -158,7 +158,7 @@ impl bidir_kernel::Film for TileBuffer {
     fn splat_threshold(&self, raster: Vec2) -> Real {
         let Some(all) = &self.thresholds else { return 0.0 };
         let (x, y) = (f64::from(raster.x) - self.origin[0], f64::from(raster.y) - self.origin[1]);
-        if x >= 0.0 && x < self.size[0] && y >= 0.0 { all.splat_at(x as usize, y as usize) } else { 0.0 }
+        if x >= 0.0 && x < self.size[0] && y >= 0.0 { all.at(x as usize, y as usize) } else { 0.0 }
     }
 
     #[inline]

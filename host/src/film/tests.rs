@@ -234,3 +234,39 @@ fn nothing_exposed_is_black_and_a_bad_window_is_refused() {
         assert!(Film::new(&FilmSettings { width: 40, height: 70, crop, filter: Filter::Box }).is_err());
     }
 }
+
+/// A field of 2 with one pixel of 0 and one of 200: the dark one has no threshold, the bright one that of what is about it.
+#[test]
+fn a_pixels_threshold_is_a_share_of_its_mean_or_of_the_mean_about_it() {
+    let crop = Crop { x: 5, y: 9, width: 19, height: 30 };
+    let film = film(crop, Filter::Box);
+    let fill = |film: &Film| {
+        expose(film, 2, |buffer, pixel, n| {
+            let value = if pixel == (10, 14) { 0.0 } else { 2.0 } * if pixel == (20, 30) { 100.0 } else { 1.0 };
+            buffer.begin(stratum(pixel, n, 2));
+            buffer.add(light([0.0, 1.5 * value, 1.5 * value]));
+            buffer.end();
+        });
+    };
+    assert!(film.thresholds(0.1).is_none(), "nothing is known of a black film");
+    fill(&film);
+    assert!(film.thresholds(0.0).is_none());
+    let found = film.thresholds(0.1).expect("thresholds");
+    let close = |x: u32, y: u32, wanted: f32| {
+        let found = found.at((x - crop.x) as usize, (y - crop.y) as usize);
+        assert!((found - wanted).abs() <= 1e-6, "({x}, {y}): {found} for {wanted}");
+    };
+    close(5, 9, 0.2);
+    close(23, 38, 0.2);
+    close(10, 14, 0.0);
+    // Its neighbour: 24 of 25 pixels are 2.
+    close(11, 14, 0.2 * 24.0 / 25.0);
+    close(20, 30, 0.1 * (24.0 * 2.0 + 200.0) / 25.0);
+    close(19, 30, 0.2);
+    film.spare(0.1);
+    let mut buffer = film.claim(3).expect("a unit");
+    buffer.begin(Vec2::new(10.5, 14.5));
+    let at = |x: f32, y: f32| buffer.splat_threshold(Vec2::new(x, y));
+    assert_eq!((buffer.threshold(), at(10.5, 14.5), at(4.9, 14.5), at(24.0, 14.5), at(6.0, 39.0)), (0.0, 0.0, 0.0, 0.0, 0.0));
+    assert!((at(6.5, 10.5) - 0.2).abs() < 1e-6);
+}

@@ -12,8 +12,6 @@ const ABOUT: usize = 2;
 pub struct Thresholds {
     width: usize,
     pixels: Vec<Real>,
-    /// What turns δ of a pixel into that of a splat: a splat's value is a mean over the window.
-    per_splat: Real,
 }
 
 impl Thresholds {
@@ -21,12 +19,6 @@ impl Thresholds {
     #[inline]
     pub fn at(&self, column: usize, row: usize) -> Real {
         self.pixels.get(row * self.width + column).copied().unwrap_or(0.0)
-    }
-
-    /// δ of a splat there.
-    #[inline]
-    pub fn splat_at(&self, column: usize, row: usize) -> Real {
-        self.at(column, row) * self.per_splat
     }
 }
 
@@ -43,7 +35,7 @@ impl Film {
         let about = averaged(&transposed(&averaged(&means, width), width), height);
         let about = transposed(&about, height);
         let of = |(own, about): (&f64, f64)| (share * own.min(about)).clamp(0.0, f64::from(Real::MAX)) as Real;
-        Some(Thresholds { width, pixels: means.iter().zip(about).map(of).collect(), per_splat: 1.0 / means.len() as Real })
+        Some(Thresholds { width, pixels: means.iter().zip(about).map(of).collect() })
     }
 }
 

@@ -151,7 +151,7 @@ impl Stage {
             return Some((format!("{name} is {count}"), "make it a number up to 1024"));
         }
         if !(self.shadow_roulette.is_finite() && self.shadow_roulette >= 0.0) {
-            return Some((format!("shadow_roulette is {}", self.shadow_roulette), "make it 0, or a small share of a pixel's mean"));
+            return Some((format!("shadow_roulette is {}", self.shadow_roulette), "make it 0, or a share of a pixel's mean such as 0.1"));
         }
         let shown = [("lens_splat", self.lens_splat), ("lens_hit", self.lens_hit)];
         let (name, count) = shown.into_iter().find(|(_, count)| *count != 0.0 && *count != walks)?;
@@ -238,6 +238,9 @@ mod tests {
             (with("\"lens_splat\": 1", "\"lens_splat\": 0.5"), "make it that many, or 0"),
             (with("\"connection\": 1", "\"connection\": 2"), "make it that many, or 0"),
             (with("\"light_hit\"", "\"from\": 3, \"light_hit\""), "sample 0"),
+            (with("\"light_hit\"", "\"shadow_roulette\": -0.1, \"light_hit\""), "shadow_roulette is -0.1; make it 0"),
+            (with("\"light_hit\"", "\"shadow_roulette\": 1e999, \"light_hit\""), "number out of range"),
+            (with("\"light_hit\"", "\"shadow_roulette\": NaN, \"light_hit\""), "this is no plan"),
             (read(r#"{"stages": []}"#), "sample 0"),
             (read(&format!(r#"{{"stages": [{{{BDPT}}}, {{{BDPT}}}]}}"#)), "in the order"),
         ];
@@ -247,5 +250,8 @@ mod tests {
         }
         assert!(with("\"connection\": 1", "\"connection\": 0.25").is_ok());
         assert!(with("\"lens_hit\": 1", "\"lens_hit\": 0").is_ok());
+        let share = |plan: Result<Plan>| plan.unwrap().stages[0].shadow_roulette;
+        assert_eq!(share(with("\"light_hit\"", "\"shadow_roulette\": 0.1, \"light_hit\"")), 0.1);
+        assert_eq!(share(with("\"light_hit\"", "\"light_hit\"")), 0.0, "a plan that does not name it");
     }
 }
