@@ -45,25 +45,32 @@ fn pictures(subject: &Subject, stage: Stage, samples: u32, seed: u64) -> Picture
     Pictures { batches: (0..BATCHES).map(batch).collect() }
 }
 
-/// Under a share of 100, one contribution in a hundred or fewer casts a ray: noisy, and still right.
+/// What each batch has more than the other.
+fn apart(found: &Pictures, wanted: &Pictures) -> Pictures {
+    let minus = |a: &[f32; 3], b: &[f32; 3]| [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+    let one = |(a, b): (&Image, &Image)| Image { pixels: a.pixels.iter().zip(&b.pixels).map(|(a, b)| minus(a, b)).collect(), ..*a };
+    Pictures { batches: found.batches.iter().zip(&wanted.batches).map(one).collect() }
+}
+
+/// The same walks with and without: what is left of their difference is roulette's alone. Under a share of 100, one contribution in a
+/// hundred or fewer casts a ray: noisy, and still right.
 #[test]
 fn any_share_leaves_the_mean_as_it_is() {
-    const SHARES: [(f64, f64); 3] = [(0.1, 0.01), (1.0, 0.02), (100.0, 0.1)];
+    const SHARES: [(f64, f64); 3] = [(0.1, 0.0005), (1.0, 0.003), (100.0, 0.05)];
     let subject = subject(16);
     for (seed, (name, techniques)) in (1..).zip(ESTIMATORS) {
-        let wanted = pictures(&subject, stage(techniques, 0.0), 32, 10 * seed);
-        for (i, (share, doubt)) in (1..).zip(SHARES) {
-            let found = pictures(&subject, stage(techniques, share), 32, 10 * seed + i);
+        let wanted = pictures(&subject, stage(techniques, 0.0), 32, seed);
+        for (share, doubt) in SHARES {
+            let found = apart(&pictures(&subject, stage(techniques, share), 32, seed), &wanted);
             let places = || std::iter::once(wanted.whole()).chain(wanted.blocks());
             for place in places() {
-                let [one, other] = [&wanted, &found].map(|pictures| pictures.mean(place, &[0, 1, 2]));
-                let apart = other.minus(&one);
+                let (mean, apart) = (wanted.mean(place, &[0, 1, 2]).mean, found.mean(place, &[0, 1, 2]));
                 let comparisons = ESTIMATORS.len() * SHARES.len() * places().count();
-                let (deviation, limit) = (apart.deviation(one.mean), threshold(comparisons, apart.degrees));
-                let off = 100.0 * apart.mean / one.mean;
-                println!("{name}, share {share}, {place:?}: {off:+.3} %, {deviation:.2} σ of {limit:.2}");
-                assert!(deviation < limit, "{name}, share {share}, {place:?}: {one:?} {other:?}");
-                assert!(place != wanted.whole() || apart.error < doubt * one.mean, "too little to tell: {one:?} {other:?}");
+                let (deviation, limit) = (apart.deviation(mean), threshold(comparisons, apart.degrees));
+                let (off, error) = (100.0 * apart.mean / mean, 100.0 * apart.error / mean);
+                println!("{name}, share {share}, {place:?}: {off:+.4} % ± {error:.4} %, {deviation:.2} σ of {limit:.2}");
+                assert!(deviation < limit, "{name}, share {share}, {place:?}: {apart:?} of {mean}");
+                assert!(place != wanted.whole() || apart.error < doubt * mean, "too little to tell: {apart:?} of {mean}");
             }
         }
     }
@@ -73,9 +80,9 @@ fn any_share_leaves_the_mean_as_it_is() {
 #[test]
 fn it_spares_shadow_rays_and_no_others() {
     let subject = subject(24);
-    for ((name, techniques), most) in ESTIMATORS.into_iter().zip([0.97, 0.99, 0.75]) {
+    for ((name, techniques), most) in ESTIMATORS.into_iter().zip([0.95, 0.95, 0.75]) {
         let rays = |share| rendered(&subject, given(&subject, &[stage(techniques, share)]), 16, 1, 1).1.rays;
-        let (all, fewer) = (rays(0.0), rays(0.1));
+        let (all, fewer) = (rays(0.0), rays(0.3));
         let left = fewer.any as f64 / all.any as f64;
         println!("{name}: {:.1} % of the shadow rays are left", 100.0 * left);
         assert_eq!(all.closest, fewer.closest);
