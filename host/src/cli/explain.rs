@@ -25,7 +25,7 @@ use crate::{
         contents::Contents,
         effects::Effects,
         gaps::{Gap, gaps},
-        joins::{Verdict, judge},
+        joins::{State, Verdict, judge},
     },
     plugin::Strictness,
     render::{Auto, Job, LONGEST_JOINED, Numbers, Target},
@@ -79,7 +79,7 @@ impl Report {
         Self {
             scene: path,
             contents: Contents::of(description, scene),
-            techniques: judge(&effects, &stage, max_depth),
+            techniques: judge(&effects, &stage, max_depth).into_iter().map(|verdict| weighed(verdict, choice.as_ref())).collect(),
             missing: gaps(&effects, &stage, max_depth),
             differences: differences(description, &effects),
             effects,
@@ -109,6 +109,16 @@ fn planned(description: &Description, scene: &Scene, effects: &Effects) -> (Plan
     let mut auto = Auto::new(description, effects);
     auto.look(scene, &job, PILOT, PIXELS, 0);
     (auto.plan().clone(), auto.choice().cloned())
+}
+
+/// The verdict, with what a pilot says against what the plan leaves out.
+fn weighed(verdict: Verdict, choice: Option<&Choice>) -> Verdict {
+    match choice.and_then(|choice| choice.with(verdict.join)) {
+        Some(times) if verdict.state == State::Off => {
+            Verdict { why: format!("does not pay: the best plan with it is {times:.2} times as efficient"), ..verdict }
+        }
+        _ => verdict,
+    }
 }
 
 /// Where this scene's image differs from Mitsuba's by more than noise.
@@ -142,8 +152,12 @@ mod tests {
     use crate::{load::load_str, plugin::Library};
 
     fn report(content: &str) -> Report {
+        report_with(content, &Library::default())
+    }
+
+    fn report_with(content: &str, library: &Library) -> Report {
         let text = format!("<scene version=\"3.0.0\"><sensor type=\"perspective\"/>{content}</scene>");
-        let description = load_str(&text, Path::new("s.xml"), None, &[], &Library::default()).unwrap().description;
+        let description = load_str(&text, Path::new("s.xml"), None, &[], library).unwrap().description;
         let scene = Scene::new(&description).unwrap();
         Report::new("s.xml".into(), &description, &scene)
     }
@@ -192,9 +206,47 @@ mod tests {
     fn paths_that_nothing_finds_are_said_aloud_with_a_remedy() {
         let report = report(CAUSTIC);
         let words = text::of(&report);
-        assert!(words.contains("L S+ D+ S+ E") && words.contains("caustics, seen in a mirror or through clear glass"), "{words}");
+        assert!(words.contains("L S+ D S+ E") && words.contains("caustics, seen in a mirror or through clear glass"), "{words}");
         assert!(words.contains("area emitter"), "{words}");
         assert!(words.contains("a pinhole cannot be hit"), "{words}");
+    }
+
+    #[test]
+    fn what_a_plan_leaves_out_has_a_reason_and_its_gaps_are_the_plans() {
+        // One matt surface: nothing to connect it to, and its caustic in the mirror is out of reach.
+        let report = report(
+            r#"<shape type="rectangle"><transform name="to_world"><translate z="3"/></transform><bsdf type="diffuse"/></shape>
+            <shape type="rectangle"><transform name="to_world"><rotate y="1" angle="180"/><scale value="4"/><translate z="8"/></transform>
+                <bsdf type="conductor"/></shape>
+            <emitter type="point"><point name="position" x="0" y="1" z="5"/></emitter>"#,
+        );
+        let stage = report.plan.last().unwrap();
+        let words = text::of(&report);
+        assert_eq!((stage.connection, report.choice.is_some()), (0.0, true), "{words}");
+        assert!(words.contains("does not pay: the best plan with it is 0."), "{words}");
+        let [.., caustic] = &report.missing[..] else { panic!("a gap") };
+        assert_eq!(caustic.class, "L S+ D+ S+ E");
+        assert!(caustic.remedy.contains("area emitter") && caustic.remedy.contains("bdpt"), "{}", caustic.remedy);
+    }
+
+    #[test]
+    fn calls_of_plugins_are_on_the_card_and_in_its_json() {
+        let library = Library::new(vec![Path::new(env!("CARGO_MANIFEST_DIR")).join("../plugins/prebuilt")]);
+        let report = report_with(
+            r#"<shape type="rectangle"><transform name="to_world"><translate z="3"/></transform><bsdf type="diffuse.wasm"/></shape>
+            <shape type="disk"><transform name="to_world"><translate z="-1"/></transform><emitter type="area"/></shape>"#,
+            &library,
+        );
+        let value = serde_json::to_value(&report).unwrap();
+        let plugin = &value["choice"]["plugins"][0];
+        assert_eq!(plugin["module"], "diffuse.wasm");
+        let number = |name: &str| plugin[name].as_f64().unwrap();
+        assert!(number("calls") > 0.5 && number("nanoseconds") > 0.0, "{plugin}");
+        assert!(number("share") > 0.0 && number("share") < 1.0, "{plugin}");
+        assert!(plugin["calls_in"]["camera_path"].as_f64().unwrap() > 0.5, "{plugin}");
+        assert!(value["choice"]["without_plugins"]["stage"].is_object());
+        let words = text::of(&report);
+        assert!(words.contains("plugin diffuse.wasm: ") && words.contains("if calls of plugins took no time"), "{words}");
     }
 
     #[test]

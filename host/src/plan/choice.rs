@@ -3,7 +3,7 @@
 use bidir_kernel::{Join, Techniques};
 use serde::Serialize;
 
-use super::{Stage, effects::Effects, evidence::Evidence, joins::possible};
+use super::{Stage, effects::Effects, evidence::Evidence, joins::possible, plugins::Plugin};
 
 /// Light paths per camera path that are tried.
 const WALKS: [f64; 5] = [0.0, 0.25, 0.5, 1.0, 2.0];
@@ -17,6 +17,8 @@ const HYSTERESIS: f64 = 1.03;
 /// Measured CPU nanoseconds.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Costs {
+    /// Of a camera path without light points.
+    pub bare_path: f64,
     /// Of a camera path with one light point per vertex.
     pub camera_path: f64,
     /// Of one light point more for each of its vertices.
@@ -31,8 +33,18 @@ impl Costs {
     /// Of a sample.
     pub fn of(&self, stage: &Stage) -> f64 {
         let techniques = stage.techniques();
-        let camera = if techniques.camera_walk() { self.camera_path + (stage.next_event - 1.0) * self.next_event } else { 0.0 };
-        camera.max(0.0) + techniques.light_walks() * self.light_path + stage.connection * self.connections
+        // A vertex is asked for its first light point and its way on at once, so that leaving out that one need not save what one more costs.
+        let camera = match stage.next_event {
+            _ if !techniques.camera_walk() => 0.0,
+            0.0 => self.bare_path,
+            count => self.camera_path + (count - 1.0) * self.next_event,
+        };
+        camera + techniques.light_walks() * self.light_path + stage.connection * self.connections
+    }
+
+    /// Each of them.
+    pub fn parts(&self) -> [f64; 5] {
+        [self.bare_path, self.camera_path, self.next_event, self.light_path, self.connections]
     }
 }
 
@@ -67,6 +79,10 @@ pub struct Choice {
     pub camera_paths: usize,
     /// What each kind of join costs and saves.
     pub joins: Vec<Worth>,
+    /// The plugins that were called, in the order in which the scene has them.
+    pub plugins: Vec<Plugin>,
+    /// What would be chosen if their calls took no time; `None` where there are no plugins.
+    pub without_plugins: Option<Candidate>,
 }
 
 /// What a kind of join costs and saves.
@@ -126,13 +142,7 @@ pub fn choose(open: &[Stage], evidence: &Evidence, costs: &Costs, under_way: Opt
     if let Some(stage) = under_way.filter(|stage| all.iter().all(|candidate| candidate.stage.techniques() != stage.techniques())) {
         all.extend(look(&[*stage]));
     }
-    all.sort_by(|a, b| b.efficiency().total_cmp(&a.efficiency()));
-    let best = *all.first()?;
-    let same = |candidate: &&Candidate| under_way.is_some_and(|stage| stage.techniques() == candidate.stage.techniques());
-    let chosen = match all.iter().find(same) {
-        Some(current) if current.efficiency() * HYSTERESIS >= best.efficiency() => *current,
-        _ => best,
-    };
+    let chosen = best(&mut all, under_way)?;
     let used: Vec<Join> = Join::ALL.into_iter().filter(|&join| chosen.stage.effort(join) > 0.0).collect();
     let without: Vec<Stage> = used.iter().map(|&join| chosen.stage.without(join)).collect();
     let joins = used.iter().zip(look(&without)).map(|(&join, left)| Worth {
@@ -140,7 +150,33 @@ pub fn choose(open: &[Stage], evidence: &Evidence, costs: &Costs, under_way: Opt
         cost: (1.0 - left.cost / chosen.cost).max(0.0),
         error_without: left.error.zip(chosen.error).map(|(without, with)| without / with.max(f64::MIN_POSITIVE)),
     });
-    Some(Choice { chosen, joins: joins.collect(), costs: *costs, camera_paths: evidence.samples(), candidates: all })
+    let (joins, camera_paths) = (joins.collect(), evidence.samples());
+    Some(Choice { chosen, joins, costs: *costs, camera_paths, candidates: all, plugins: Vec::new(), without_plugins: None })
+}
+
+/// Puts the best ones first, and gives the best: the stage under way, unless another one is clearly better.
+fn best(all: &mut [Candidate], under_way: Option<&Stage>) -> Option<Candidate> {
+    all.sort_by(|a, b| b.efficiency().total_cmp(&a.efficiency()));
+    let best = *all.first()?;
+    let same = |candidate: &&Candidate| under_way.is_some_and(|stage| stage.techniques() == candidate.stage.techniques());
+    match all.iter().find(same) {
+        Some(current) if current.efficiency() * HYSTERESIS >= best.efficiency() => Some(*current),
+        _ => Some(best),
+    }
+}
+
+impl Choice {
+    /// How many times as efficient as the chosen plan the best one with this kind of join is, if one was looked at.
+    pub fn with(&self, join: Join) -> Option<f64> {
+        let efficiencies = self.candidates.iter().filter(|candidate| candidate.stage.effort(join) > 0.0).map(Candidate::efficiency);
+        efficiencies.reduce(f64::max).map(|best| best / self.chosen.efficiency())
+    }
+
+    /// What the chosen plan would be left for at other costs, or that plan.
+    pub fn at(&self, costs: &Costs) -> Candidate {
+        let mut all: Vec<_> = self.candidates.iter().map(|one| Candidate { cost: costs.of(&one.stage), ..*one }).collect();
+        best(&mut all, Some(&self.chosen.stage)).unwrap_or(self.chosen)
+    }
 }
 
 impl Stage {
@@ -194,7 +230,7 @@ mod tests {
         evidence
     }
 
-    const COSTS: Costs = Costs { camera_path: 1000.0, next_event: 300.0, light_path: 1500.0, connections: 2000.0 };
+    const COSTS: Costs = Costs { bare_path: 700.0, camera_path: 1000.0, next_event: 300.0, light_path: 1500.0, connections: 2000.0 };
 
     #[test]
     fn light_paths_run_where_they_pay() {
@@ -207,6 +243,28 @@ mod tests {
         assert!(found.lens_splat > 0.0 && found.connection == 0.0, "{found:?}");
         let connected = choose([0.001, 0.0, 0.989, 0.01, 0.0]);
         assert!(connected.connection > 0.0, "{connected:?}");
+    }
+
+    #[test]
+    fn a_first_light_point_costs_what_was_measured_and_not_what_one_more_does() {
+        let with = |next_event| Stage::of(&Techniques { next_event, ..Techniques::PATH });
+        assert_eq!([0.0, 1.0, 3.0].map(|count| COSTS.of(&with(count))), [700.0, 1000.0, 1600.0]);
+    }
+
+    #[test]
+    fn what_was_left_out_is_told_from_the_best_plan_that_has_it() {
+        let choice = choose(&open(&ROOM, None), &evidence([0.2, 0.78, 0.01, 0.01, 0.0]), &COSTS, None).unwrap();
+        let connected = choice.with(Join::Connection).unwrap();
+        assert!(connected > 0.0 && connected < 1.0, "{connected}");
+        assert_eq!((choice.with(Join::NextEvent), choice.with(Join::LensHit)), (Some(1.0), None));
+    }
+
+    #[test]
+    fn other_costs_make_another_choice_of_the_same_evidence() {
+        let dear = Costs { light_path: 1e6, connections: 1e6, ..COSTS };
+        let choice = choose(&open(&ROOM, None), &evidence([0.05, 0.3, 0.6, 0.05, 0.0]), &dear, None).unwrap();
+        assert_eq!((choice.chosen.stage.connection, choice.at(&dear).stage), (0.0, choice.chosen.stage));
+        assert!(choice.at(&COSTS).stage.connection > 0.0);
     }
 
     #[test]

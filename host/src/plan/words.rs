@@ -3,6 +3,7 @@
 use super::{
     Stage,
     choice::{Candidate, Choice},
+    plugins::Plugin,
 };
 
 /// What a stage samples.
@@ -66,7 +67,7 @@ fn against(choice: &Choice) -> String {
 
 /// The plan card: what was chosen, what it rests on, and what would change it.
 pub fn card(choice: &Choice) -> Vec<String> {
-    let Choice { chosen, candidates, costs, camera_paths, joins } = choice;
+    let Choice { chosen, candidates, costs, camera_paths, joins, plugins, without_plugins } = choice;
     let mut lines = vec![
         format!("auto: {}", stage(&chosen.stage)),
         format!(
@@ -88,12 +89,32 @@ pub fn card(choice: &Choice) -> Vec<String> {
         };
         lines.push(format!("{:<11} {:>4} of the time; {saved}", worth.join.replace('_', " "), share(worth.cost)));
     }
+    let other = without_plugins.map(|other| other.stage).filter(|other| other.techniques() != chosen.stage.techniques());
+    // What neither takes time nor decides is left out.
+    lines.extend(plugins.iter().filter(|plugin| other.is_some() || plugin.share >= 0.01).map(plugin));
     let against = against(choice);
     if !against.is_empty() {
         lines.push(against);
     }
     lines.extend(candidates.iter().find(|other| other.stage != chosen.stage && other.error.is_some()).map(|other| change(chosen, other)));
+    if without_plugins.is_some() {
+        let words = other.map_or("this plan would be chosen too".to_owned(), |other| format!("it would be: {}", stage(&other)));
+        lines.push(format!("if calls of plugins took no time, {words}"));
+    }
     lines
+}
+
+/// A plugin's part in a sample, and where its calls come from.
+fn plugin(plugin: &Plugin) -> String {
+    let Plugin { module, calls, nanoseconds, share: part, calls_in } = plugin;
+    format!(
+        "plugin {module}: {calls:.1} calls of {} a sample, {} of the time; {:.1} calls in a camera path, {:.1} in a light path, {:.1} in all connections",
+        time(*nanoseconds),
+        share(*part),
+        calls_in.camera_path,
+        calls_in.light_path,
+        calls_in.connections
+    )
 }
 
 /// What would make the next best plan the best one.
