@@ -36,12 +36,31 @@ impl Costs {
     }
 }
 
+/// How long a render goes on.
+#[derive(Clone, Copy, Debug)]
+pub enum Until {
+    /// So many samples of every pixel.
+    Samples(f64),
+    /// So many CPU nanoseconds per pixel.
+    Nanoseconds(f64),
+}
+
+impl Until {
+    /// Samples per pixel that a plan comes to.
+    fn samples(self, cost: f64) -> f64 {
+        match self {
+            Self::Samples(samples) => samples,
+            Self::Nanoseconds(time) => time / cost.max(1.0),
+        }
+    }
+}
+
 /// A plan that was looked at.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Candidate {
     /// Its counts.
     pub stage: Stage,
-    /// relMSE of one sample per pixel, about; `None` where the plan misses what the pilot saw.
+    /// relMSE at the end of the render times its samples per pixel, about; `None` where the plan misses what the pilot saw.
     pub error: Option<f64>,
     /// CPU nanoseconds of a sample.
     pub cost: f64,
@@ -109,9 +128,10 @@ pub fn broadest(open: &[Stage]) -> Option<Stage> {
 }
 
 /// The best of the open plans, by what the pilot saw and what it took; the stage under way, unless another one is clearly better.
-pub fn choose(open: &[Stage], evidence: &Evidence, costs: &Costs, under_way: Option<&Stage>) -> Option<Choice> {
+pub fn choose(open: &[Stage], evidence: &Evidence, costs: &Costs, until: Until, under_way: Option<&Stage>) -> Option<Choice> {
     let look = |stages: &[Stage]| -> Vec<Candidate> {
-        let errors = evidence.errors(stages);
+        let plans: Vec<_> = stages.iter().map(|stage| (*stage, until.samples(costs.of(stage)))).collect();
+        let errors = evidence.errors(&plans);
         let candidate = |(stage, error): (&Stage, f64)| Candidate {
             stage: *stage,
             error: error.is_finite().then_some(error.max(0.0)),

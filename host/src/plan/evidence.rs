@@ -6,13 +6,19 @@
 //! make (Grittmann, Yazici, Georgiev & Křivánek 2022, "Efficiency-Aware Multiple Importance Sampling for Bidirectional Rendering
 //! Algorithms").
 //!
-//! What is left of a plan's error is seen rather than told: each pixel that is looked at has two independent runs of a few of the render's
-//! own samples, stratified as they are there, and half the square of their difference is what such a run varies by. Of the paths that the
-//! plan makes itself, this takes the place of their second moments.
+//! What is left of a plan's error is seen rather than told: each pixel that is looked at has two independent runs of the render's
+//! own samples, stratified as they are there, and half the square of their difference is what such a run varies by. Shorter parts of the
+//! runs tell how much the samples' distance from each other helps, and by how much it will help a render of many more. Of the paths that
+//! the plan makes itself, this takes the place of their second moments.
+//!
+//! A render's error is trimmed, and what a plan makes so seldom that it would be on fewer pixels than are trimmed is left out here too.
+
+use std::cmp::Ordering;
 
 use bidir_kernel::{Join, Technique};
 
 use super::Stage;
+use crate::image::trim::TRIM;
 
 /// Keeps a relative squared error finite in black pixels; relMSE's usual ε.
 const EPSILON: f64 = 0.01;
@@ -132,24 +138,62 @@ impl Evidence {
         means.into_iter().map(|mean| 1.0 / (mean * mean + EPSILON)).collect()
     }
 
-    /// The relMSE of one sample per pixel under each of these plans, about; infinite where a plan cannot make what the pilot saw.
-    pub fn errors(&self, stages: &[Stage]) -> Vec<f64> {
+    /// The relMSE, trimmed, of renders by these plans that have so many samples per pixel, times their number;
+    /// infinite where a plan cannot make what the pilot saw.
+    pub fn errors(&self, plans: &[(Stage, f64)]) -> Vec<f64> {
         let importance = self.importance();
-        stages.iter().map(|stage| self.error(stage, &importance)).collect()
+        plans.iter().map(|(stage, samples)| self.error(stage, *samples, &importance)).collect()
     }
 
-    fn error(&self, stage: &Stage, importance: &[f64]) -> f64 {
+    fn error(&self, stage: &Stage, samples: f64, importance: &[f64]) -> f64 {
         let counts = Counts::of(stage);
-        let mut camera = 0.0;
+        let mut moments = Moments::default();
+        let mut spread = Spread::default();
+        let (per_path, per_walk) = (1.0 / self.samples().max(1) as f64, 1.0 / self.walks.max(1.0));
         for (block, paths) in self.places() {
-            let mut runs = [Run::default(); 2];
-            for (number, path) in paths.enumerate() {
-                counts.sample(path, &mut runs[number % 2]);
-            }
-            camera += Run::variance(&runs) * importance[block as usize];
+            spread.place(&counts, paths, importance[block as usize], |brought| {
+                moments.take(&counts, brought, importance[block as usize], (CAMERA, per_path));
+            });
         }
-        let splats: f64 = self.splats.iter().map(|(block, brought)| counts.moment(brought) * importance[*block as usize]).sum();
-        camera / self.places.len().max(1) as f64 + splats / self.walks.max(1.0)
+        for (block, brought) in &self.splats {
+            moments.take(&counts, brought, importance[*block as usize], (SPLATS, per_walk));
+        }
+        if moments.missed {
+            return f64::INFINITY;
+        }
+        let (kept, cut) = moments.trimmed(samples);
+        if std::env::var("DBG").is_ok() {
+            let sum = |from: usize| moments.bins[from].iter().map(|bin| bin[1]).sum::<f64>();
+            eprintln!("DBG {:?} n {samples:.0} pooled {:.4} {:.4} kept {:.4} {:.4} left {:.4} all {:.4} lengths {:?} at {:.4} samples {} walks {}", counts.of, sum(0), sum(1), kept[0], kept[1], samples*self.left_out(&counts, &cut, importance), spread.all / spread.places, spread.lengths.map(|x| (1e4 * x / spread.places).round() / 1e4), spread.at(kept[CAMERA], samples), self.samples(), self.walks);
+            let top: Vec<_> = (0..Moments::BINS).filter(|&bin| moments.bins[0][bin][1] + moments.bins[1][bin][1] > 0.003).map(|bin| (bin as i32 - 64, [0, 1].map(|f| moments.bins[f][bin].map(|x| (x * 1e5).round() / 1e5)))).collect();
+            eprintln!("DBG {top:?}");
+        }
+        spread.at(kept[CAMERA], samples) + kept[SPLATS] + samples * self.left_out(&counts, &cut, importance)
+    }
+
+    /// What is missing from the pixels where nothing came of what is trimmed: the mean square of it.
+    fn left_out(&self, counts: &Counts, cut: &Cut, importance: &[f64]) -> f64 {
+        if cut.nothing() {
+            return 0.0;
+        }
+        let mut missing = vec![0.0; self.sizes.len()];
+        let mut paths_of = vec![0.0_f64; self.sizes.len()];
+        for (block, paths) in self.places() {
+            let at = block as usize;
+            for path in paths {
+                paths_of[at] += 1.0;
+                missing[at] += path.iter().map(|brought| brought.value * cut.share(counts.square(brought, importance[at]))).sum::<f64>();
+            }
+        }
+        missing.iter_mut().zip(paths_of).for_each(|(missing, paths)| *missing /= paths.max(1.0));
+        for (block, brought) in &self.splats {
+            let at = *block as usize;
+            let share = cut.share(counts.square(brought, importance[at]));
+            missing[at] += share * brought.value * self.pixels / (self.walks * self.sizes[at]);
+        }
+        let weighed =
+            missing.iter().zip(importance).zip(&self.sizes).map(|((missing, importance), size)| missing * missing * importance * size);
+        weighed.sum::<f64>() / self.pixels
     }
 }
 
@@ -158,31 +202,6 @@ struct Counts {
     of: [f64; Join::COUNT],
     /// How often two pairs of vertices of the same two walks are both connected.
     both_connected: f64,
-}
-
-/// What a run of camera paths would have brought.
-#[derive(Clone, Copy, Debug, Default)]
-struct Run {
-    samples: f64,
-    total: f64,
-    /// What the second moments of single paths, by all that the pilot saw, exceed those of the plan's own samples by.
-    unseen: f64,
-    /// What making only some of the connections adds.
-    rationed: f64,
-}
-
-impl Run {
-    /// Of one camera path.
-    fn variance([a, b]: &[Self; 2]) -> f64 {
-        if a.samples == 0.0 || b.samples == 0.0 {
-            return 0.0;
-        }
-        let samples = a.samples + b.samples;
-        let apart = a.total / a.samples - b.total / b.samples;
-        // Var(a − b) = σ² (1/m + 1/n).
-        let seen = apart * apart * a.samples * b.samples / samples;
-        seen + (a.unseen + b.unseen + a.rationed + b.rationed) / samples
-    }
 }
 
 impl Counts {
@@ -197,31 +216,206 @@ impl Counts {
         brought.shares.iter().zip(self.of).map(|(share, count)| share * count).sum()
     }
 
-    fn moment(&self, brought: &Brought) -> f64 {
-        if brought.value == 0.0 { 0.0 } else { brought.value * brought.value / self.density(brought) }
+    /// The square of what such a path brings.
+    fn square(&self, brought: &Brought, importance: f64) -> f64 {
+        let value = brought.value / self.density(brought);
+        value * value * importance
+    }
+}
+
+/// What comes from camera walks, and what from light walks alone.
+const CAMERA: usize = 0;
+const SPLATS: usize = 1;
+
+/// Second moments of contributions, by how large each one is: a power of two each.
+#[derive(Clone, Debug)]
+struct Moments {
+    /// Of how many such contributions a sample has, and of the sum of their squares.
+    bins: [[[f64; 2]; Self::BINS]; 2],
+    /// Whether there is one that the plan never makes.
+    missed: bool,
+}
+
+impl Default for Moments {
+    fn default() -> Self {
+        Self { bins: [[[0.0; 2]; Self::BINS]; 2], missed: false }
+    }
+}
+
+impl Moments {
+    /// From 2^−64 to 2^64; what is beyond is with the last ones.
+    const BINS: usize = 128;
+
+    fn bin(square: f64) -> usize {
+        let exponent = (square.to_bits() >> 52 & 0x7ff) as i32 - 1023;
+        (exponent + Self::BINS as i32 / 2).clamp(0, Self::BINS as i32 - 1) as usize
     }
 
-    /// One more camera path.
-    fn sample(&self, path: &[Brought], run: &mut Run) {
-        let (mut connected, mut squares) = (0.0, 0.0);
-        for one in path {
-            let join = one.technique.join();
-            let count = self.of[join as usize];
-            run.unseen += self.moment(one);
-            if count == 0.0 {
-                continue;
+    /// A contribution of the pilot, as the plan would make it: `per` sample.
+    fn take(&mut self, counts: &Counts, brought: &Brought, importance: f64, (from, per): (usize, f64)) {
+        let density = counts.density(brought);
+        if density == 0.0 {
+            self.missed = true;
+            return;
+        }
+        let square = counts.square(brought, importance);
+        let [number, squares] = &mut self.bins[from][Self::bin(square)];
+        *number += density * per;
+        *squares += density * square * per;
+    }
+
+    /// The moments of what would be on more pixels than are trimmed, and where it is cut.
+    fn trimmed(&self, samples: f64) -> ([f64; 2], Cut) {
+        let mut spare = TRIM / samples.max(1.0);
+        let mut cut = Cut { bin: Self::BINS, share: 0.0 };
+        let mut kept = [0.0; 2];
+        for bin in (0..Self::BINS).rev() {
+            let number = self.bins[CAMERA][bin][0] + self.bins[SPLATS][bin][0];
+            let share = if spare == 0.0 || number == 0.0 { 0.0 } else { (spare / number).min(1.0) };
+            if share > 0.0 {
+                cut = Cut { bin, share };
             }
-            let value = one.value / self.density(one);
-            run.total += count * value;
-            run.unseen -= count * value * value;
-            if join == Join::Connection {
-                connected += value;
-                squares += value * value;
+            spare = (spare - number).max(0.0);
+            for (kept, bins) in kept.iter_mut().zip(&self.bins) {
+                *kept += (1.0 - share) * bins[bin][1];
             }
         }
-        let count = self.of[Join::Connection as usize];
-        run.rationed += self.both_connected * (connected * connected - squares) + count * squares - count * count * connected * connected;
-        run.samples += 1.0;
+        (kept, cut)
+    }
+}
+
+/// What is trimmed: every contribution larger than those of this bin, and some of its.
+struct Cut {
+    bin: usize,
+    share: f64,
+}
+
+impl Cut {
+    fn nothing(&self) -> bool {
+        self.bin == Moments::BINS
+    }
+
+    /// How much of such contributions is trimmed.
+    fn share(&self, square: f64) -> f64 {
+        match Moments::bin(square).cmp(&self.bin) {
+            Ordering::Less => 0.0,
+            Ordering::Equal => self.share,
+            Ordering::Greater => 1.0,
+        }
+    }
+}
+
+/// What runs of camera paths vary by, beyond the second moments of their contributions: by their length, which doubles from 1 on.
+#[derive(Clone, Copy, Debug, Default)]
+struct Spread {
+    lengths: [f64; Self::LENGTHS],
+    /// Of all lengths: what making only some of the connections adds, less the second moments of the plan's own samples.
+    all: f64,
+    /// How many lengths the runs had.
+    known: usize,
+    places: f64,
+}
+
+impl Spread {
+    /// Runs of up to 32 samples.
+    const LENGTHS: usize = 6;
+
+    /// A pixel that was looked at, with its two runs in turn.
+    fn place<'a>(&mut self, counts: &Counts, paths: impl Iterator<Item = &'a [Brought]>, importance: f64, mut each: impl FnMut(&Brought)) {
+        let mut runs = [[0.0; 1 << (Self::LENGTHS - 1)]; 2];
+        let (mut number, mut all) = (0, 0.0);
+        for path in paths {
+            let mut one = Sample::default();
+            for brought in path {
+                each(brought);
+                one.add(counts, brought);
+            }
+            if let Some(slot) = runs[number % 2].get_mut(number / 2) {
+                *slot = one.total;
+                all += one.rationed(counts) - one.own;
+                number += 1;
+            }
+        }
+        let mut length = number / 2;
+        if length == 0 {
+            return;
+        }
+        self.known = length.ilog2() as usize + 1;
+        self.places += 1.0;
+        self.all += all * importance / number as f64;
+        for level in 0..self.known {
+            // Var(a − b) = 2 σ²/m for runs of m samples; all pairs of parts of the two runs are independent.
+            let parts = runs.each_ref().map(|run| {
+                let sums = run[..length].iter().fold([0.0; 2], |[sum, squares], x| [sum + x, squares + x * x]);
+                sums.map(|sum| sum / length as f64)
+            });
+            let [a, b] = parts;
+            self.lengths[level] += importance * f64::from(1 << level) * (0.5 * (a[1] + b[1]) - a[0] * b[0]);
+            length /= 2;
+            for run in &mut runs {
+                for i in 0..length {
+                    run[i] = 0.5 * (run[2 * i] + run[2 * i + 1]);
+                }
+            }
+        }
+    }
+
+    /// The error of one of so many samples per pixel, whose second moment is `moment`.
+    fn at(&self, moment: f64, samples: f64) -> f64 {
+        if self.places == 0.0 || moment.is_infinite() {
+            return moment;
+        }
+        let of = |level: usize| (moment + (self.lengths[level] + self.all) / self.places).max(0.0);
+        let last = self.known - 1;
+        // Samples of even and of odd number are two runs.
+        let level = (0.5 * samples).max(1.0).log2();
+        if level <= last as f64 {
+            let (below, part) = (level as usize, level.fract());
+            return of(below) + part * (of((below + 1).min(last)) - of(below));
+        }
+        // Beyond, it is taken to go on falling as it did.
+        let (before, reached) = (of(last.saturating_sub(2)), of(last));
+        let slope = if before > 0.0 { (reached / before).sqrt().clamp(SLOPE, 1.0) } else { 1.0 };
+        reached * slope.powf((level - last as f64).min(FARTHEST))
+    }
+}
+
+/// The least that twice the samples leave of an error beyond half of it.
+const SLOPE: f64 = 0.75;
+/// Doublings for which an error may fall so.
+const FARTHEST: f64 = 6.0;
+
+/// What a camera path and its light path would have brought.
+#[derive(Clone, Copy, Debug, Default)]
+struct Sample {
+    total: f64,
+    /// Σ of squares, as often as the plan makes each.
+    own: f64,
+    connected: f64,
+    squares: f64,
+}
+
+impl Sample {
+    fn add(&mut self, counts: &Counts, brought: &Brought) {
+        let join = brought.technique.join();
+        let count = counts.of[join as usize];
+        if count == 0.0 {
+            return;
+        }
+        let value = brought.value / counts.density(brought);
+        self.total += count * value;
+        self.own += count * value * value;
+        if join == Join::Connection {
+            self.connected += value;
+            self.squares += value * value;
+        }
+    }
+
+    /// What making only some of the connections adds.
+    fn rationed(&self, counts: &Counts) -> f64 {
+        let count = counts.of[Join::Connection as usize];
+        let Self { connected, squares, .. } = self;
+        counts.both_connected * (connected * connected - squares) + count * squares - count * count * connected * connected
     }
 }
 

@@ -8,7 +8,7 @@ use super::{Job, Status, Target, pilot::Pilot};
 use crate::{
     plan::{
         Plan, Stage,
-        choice::{Choice, broadest, choose, open},
+        choice::{Choice, Until, broadest, choose, open},
         effects::Effects,
     },
     scene::{
@@ -69,6 +69,9 @@ const FIRST: [f64; 2] = [64.0, 1_024.0];
 /// About how many camera paths one of the pilot's pixels costs.
 const PATHS_PER_PIXEL: f64 = 90.0;
 
+/// Samples per pixel that a render is taken to need where nobody knows.
+const UNKNOWN: f64 = 256.0;
+
 /// Pilots come again when a render has taken so many times as long as when the last one came.
 const AGAIN: f64 = 4.0;
 
@@ -127,7 +130,7 @@ impl Auto {
         if self.open.len() > 1 {
             self.pilot.look(scene, job, time, pixels);
             // Where nothing varies that was seen, there may be something that was not.
-            self.choice = choose(&self.open, self.pilot.evidence(), &self.pilot.costs(), under_way.as_ref())
+            self.choice = choose(&self.open, self.pilot.evidence(), &self.pilot.costs(), self.until(job), under_way.as_ref())
                 .filter(|choice| choice.chosen.error.is_some_and(|error| error > 0.0));
         }
         let chosen = match &self.choice {
@@ -138,6 +141,15 @@ impl Auto {
             self.plan.stages.push(Stage { from, ..chosen });
         }
         self.elapsed += start.elapsed();
+    }
+
+    /// How long the render goes on, as far as that is known.
+    fn until(&self, job: &Job) -> Until {
+        match job.target {
+            Target::Samples(samples) => Until::Samples(f64::from(samples)),
+            Target::Time(time) => Until::Nanoseconds(time.as_nanos() as f64 * job.threads as f64 / self.pixels),
+            Target::Error(_) => Until::Samples(UNKNOWN),
+        }
     }
 
     /// How long the first pilot may take on each thread, and how many pixels it may look at.

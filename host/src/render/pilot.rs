@@ -26,13 +26,13 @@ use crate::{
 };
 
 /// Pixels that one round looks at.
-const ROUND: u32 = 16;
+const ROUND: u32 = 4;
 
 /// Samples of each of them, half of them in either run.
-const SAMPLES: u32 = 16;
+const SAMPLES: u32 = 64;
 
 /// Of these, how many costs are measured with.
-const TIMED: usize = 4;
+const TIMED: usize = 16;
 
 /// About how many blocks the image has.
 const BLOCKS: f64 = 256.0;
@@ -216,7 +216,7 @@ impl Kept {
         let Contribution { value, weight, technique } = *contribution;
         let value = f64::from(value.mean()) * f64::from(weight);
         let shares = shares(technique, self.weighed.0, |join| self.weighed.1.of(join));
-        let whole = value.is_finite() && shares.iter().all(|share| share.is_finite());
+        let whole = value.is_finite() && value != 0.0 && shares.iter().all(|share| share.is_finite());
         whole.then_some(Brought { value, technique, shares })
     }
 }
