@@ -19,7 +19,7 @@ const HYSTERESIS: f64 = 1.03;
 pub struct Costs {
     /// Of a camera path with one light point per vertex.
     pub camera_path: f64,
-    /// Of one light point more for each of its vertices.
+    /// Of the light point of each of its vertices, within that.
     pub next_event: f64,
     /// Of a light path whose vertices are shown to the lens.
     pub light_path: f64,
@@ -36,12 +36,31 @@ impl Costs {
     }
 }
 
+/// How long a render goes on.
+#[derive(Clone, Copy, Debug)]
+pub enum Until {
+    /// So many samples of every pixel.
+    Samples(f64),
+    /// So many CPU nanoseconds per pixel.
+    Nanoseconds(f64),
+}
+
+impl Until {
+    /// Samples per pixel that a plan comes to.
+    fn samples(self, cost: f64) -> f64 {
+        match self {
+            Self::Samples(samples) => samples,
+            Self::Nanoseconds(time) => time / cost.max(1.0),
+        }
+    }
+}
+
 /// A plan that was looked at.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Candidate {
     /// Its counts.
     pub stage: Stage,
-    /// relMSE of one sample per pixel, about; `None` where the plan misses what the pilot saw.
+    /// relMSE at the end of the render times its samples per pixel, about; `None` where the plan misses what the pilot saw.
     pub error: Option<f64>,
     /// CPU nanoseconds of a sample.
     pub cost: f64,
@@ -109,9 +128,10 @@ pub fn broadest(open: &[Stage]) -> Option<Stage> {
 }
 
 /// The best of the open plans, by what the pilot saw and what it took; the stage under way, unless another one is clearly better.
-pub fn choose(open: &[Stage], evidence: &Evidence, costs: &Costs, under_way: Option<&Stage>) -> Option<Choice> {
+pub fn choose(open: &[Stage], evidence: &Evidence, costs: &Costs, until: Until, under_way: Option<&Stage>) -> Option<Choice> {
     let look = |stages: &[Stage]| -> Vec<Candidate> {
-        let errors = evidence.errors(stages);
+        let plans: Vec<_> = stages.iter().map(|stage| (*stage, until.samples(costs.of(stage)))).collect();
+        let errors = evidence.errors(&plans);
         let candidate = |(stage, error): (&Stage, f64)| Candidate {
             stage: *stage,
             error: error.is_finite().then_some(error.max(0.0)),
@@ -181,7 +201,7 @@ mod tests {
     }
 
     fn evidence(shares: [f64; 5]) -> Evidence {
-        let mut evidence = Evidence::new(vec![1.0]);
+        let mut evidence = Evidence::new(vec![1.0], 1);
         for i in 0..64 {
             if i % 8 == 0 {
                 evidence.add(Brought { value: 1.0, technique: Technique { s: 1, t: 3 }, shares });
@@ -199,7 +219,7 @@ mod tests {
     #[test]
     fn light_paths_run_where_they_pay() {
         let open = open(&ROOM, None);
-        let choose = |shares| choose(&open, &evidence(shares), &COSTS, None).unwrap().chosen.stage;
+        let choose = |shares| choose(&open, &evidence(shares), &COSTS, Until::Samples(32.0), None).unwrap().chosen.stage;
         // What the camera finds as well as anything.
         assert_eq!(choose([0.2, 0.78, 0.01, 0.01, 0.0]).lens_splat, 0.0);
         // What it hardly ever finds.
@@ -213,11 +233,14 @@ mod tests {
     fn a_plan_under_way_stays_unless_another_is_clearly_better() {
         let open = open(&ROOM, None);
         let evidence = evidence([0.2, 0.78, 0.01, 0.01, 0.0]);
-        let best = choose(&open, &evidence, &COSTS, None).unwrap();
+        let best = choose(&open, &evidence, &COSTS, Until::Samples(32.0), None).unwrap();
         let second = best.candidates[1].stage;
         let stays = best.candidates[1].efficiency() * HYSTERESIS >= best.chosen.efficiency();
-        let again = choose(&open, &evidence, &COSTS, Some(&second)).unwrap().chosen.stage;
+        let again = choose(&open, &evidence, &COSTS, Until::Samples(32.0), Some(&second)).unwrap().chosen.stage;
         assert_eq!(again == second, stays);
-        assert_eq!(choose(&open, &evidence, &COSTS, Some(&best.candidates[12].stage)).unwrap().chosen.stage, best.chosen.stage);
+        assert_eq!(
+            choose(&open, &evidence, &COSTS, Until::Samples(32.0), Some(&best.candidates[12].stage)).unwrap().chosen.stage,
+            best.chosen.stage
+        );
     }
 }

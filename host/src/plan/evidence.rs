@@ -6,16 +6,29 @@
 //! make (Grittmann, Yazici, Georgiev & Křivánek 2022, "Efficiency-Aware Multiple Importance Sampling for Bidirectional Rendering
 //! Algorithms").
 //!
-//! What is left of a plan's error is seen rather than told: each pixel that is looked at has two independent runs of a few of the render's
-//! own samples, stratified as they are there, and half the square of their difference is what such a run varies by. Of the paths that the
-//! plan makes itself, this takes the place of their second moments.
+//! That is needed of paths which a plan makes so seldom that it would not have met one itself in the time of a pilot. What it makes often
+//! is seen rather than told: each pixel that is looked at has two independent runs of the render's own samples, stratified as they are
+//! there, and half the square of their difference is what such a run varies by. Shorter parts of the runs tell how much the
+//! samples' distance from each other helps, and by how much it will help a render of many more. Splats of all pixels' walks fall
+//! where they like: each for itself.
+//!
+//! A render's error is trimmed, and what a plan makes so seldom that it would be on fewer pixels than are trimmed is left out here too.
+
+use std::cmp::Ordering;
 
 use bidir_kernel::{Join, Technique};
 
 use super::Stage;
+use crate::image::trim::TRIM;
 
 /// Keeps a relative squared error finite in black pixels; relMSE's usual ε.
 const EPSILON: f64 = 0.01;
+
+/// Contributions of which the pilot would have fewer than this by the plan itself are rare.
+const ENOUGH: f64 = 16.0;
+
+/// Contributions are elusive which a plan makes less than so many times as densely as the pilot.
+const ELUSIVE: f64 = 0.6;
 
 /// A contribution of the pilot.
 #[derive(Clone, Copy, Debug)]
@@ -33,15 +46,16 @@ pub struct Brought {
 pub struct Evidence {
     /// Pixels of the image.
     pixels: f64,
-    /// Pixels of each block.
+    /// Pixels of each block, row by row.
     sizes: Vec<f64>,
+    /// Blocks in a row.
+    columns: usize,
     places: Vec<Place>,
     /// Where the contributions of each camera path end in `camera`.
     ends: Vec<usize>,
     camera: Vec<Brought>,
+    /// With the block each fell on.
     splats: Vec<(u32, Brought)>,
-    /// Light walks.
-    walks: f64,
 }
 
 /// A pixel that was looked at.
@@ -50,12 +64,14 @@ struct Place {
     block: u32,
     /// Where its camera paths end in `ends`: those of even and of odd number are the two runs.
     end: usize,
+    /// Where what its light paths brought ends in `splats`.
+    splats: usize,
 }
 
 impl Evidence {
-    /// Nothing yet, of an image whose blocks have that many pixels.
-    pub fn new(sizes: Vec<f64>) -> Self {
-        Self { pixels: sizes.iter().sum(), sizes, ..Self::default() }
+    /// Nothing yet, of an image whose blocks have that many pixels, so many of them in a row.
+    pub fn new(sizes: Vec<f64>, columns: usize) -> Self {
+        Self { pixels: sizes.iter().sum(), sizes, columns, ..Self::default() }
     }
 
     /// A contribution of the camera path under way.
@@ -81,12 +97,11 @@ impl Evidence {
     /// A camera path and its light path are done.
     pub fn end_sample(&mut self) {
         self.ends.push(self.camera.len());
-        self.walks += 1.0;
     }
 
     /// All camera paths of a pixel of this block are done, the two runs in turn.
     pub fn end_place(&mut self, block: u32) {
-        self.places.push(Place { block, end: self.ends.len() });
+        self.places.push(Place { block, end: self.ends.len(), splats: self.splats.len() });
     }
 
     /// Camera paths.
@@ -96,12 +111,40 @@ impl Evidence {
 
     /// Takes in what another thread brought.
     pub fn merge(&mut self, other: Self) {
-        let (camera, ends) = (self.camera.len(), self.ends.len());
-        self.places.extend(other.places.into_iter().map(|place| Place { end: place.end + ends, ..place }));
+        let (camera, ends, splats) = (self.camera.len(), self.ends.len(), self.splats.len());
+        let after = |place: Place| Place { end: place.end + ends, splats: place.splats + splats, ..place };
+        self.places.extend(other.places.into_iter().map(after));
         self.ends.extend(other.ends.into_iter().map(|end| end + camera));
         self.camera.extend(other.camera);
         self.splats.extend(other.splats);
-        self.walks += other.walks;
+    }
+
+    /// Forgets every other pixel, and with it what its light paths brought: room for what is seen from now on.
+    pub fn thin(&mut self) {
+        let all = std::mem::take(self);
+        *self = Self::new(all.sizes, all.columns);
+        let (mut first, mut first_splat) = (0_usize, 0);
+        for (turn, place) in all.places.iter().enumerate() {
+            if turn % 2 == 1 {
+                let start = first.checked_sub(1).map_or(0, |before| all.ends[before]);
+                let ends = &all.ends[first..place.end];
+                let moved = self.camera.len();
+                self.camera.extend_from_slice(&all.camera[start..ends.last().copied().unwrap_or(start)]);
+                self.ends.extend(ends.iter().map(|end| end - start + moved));
+                self.splats.extend_from_slice(&all.splats[first_splat..place.splats]);
+                self.end_place(place.block);
+            }
+            (first, first_splat) = (place.end, place.splats);
+        }
+    }
+
+    /// What all camera paths of each pixel that was looked at brought.
+    fn camera_of_places(&self) -> impl Iterator<Item = &[Brought]> {
+        let mut start = 0;
+        self.places.iter().map(move |place| {
+            let end = place.end.checked_sub(1).map_or(0, |last| self.ends[last]);
+            &self.camera[std::mem::replace(&mut start, end)..end]
+        })
     }
 
     /// Each pixel that was looked at, with its camera paths' contributions.
@@ -124,32 +167,79 @@ impl Evidence {
                 sums[block as usize] += path.iter().map(|brought| brought.value).sum::<f64>();
             }
         }
-        let mut means: Vec<f64> = sums.iter().zip(&samples).map(|(sum, n)| if *n > 0.0 { sum / n } else { 0.0 }).collect();
+        let mut means: Vec<f64> = (0..sums.len()).map(|block| self.around(block, &sums, &samples)).collect();
         for (block, brought) in &self.splats {
             // Every walk may land anywhere; the image has one per pixel.
-            means[*block as usize] += brought.value * self.pixels / (self.walks * self.sizes[*block as usize]);
+            means[*block as usize] += brought.value * self.pixels / (self.samples() as f64 * self.sizes[*block as usize]);
         }
         means.into_iter().map(|mean| 1.0 / (mean * mean + EPSILON)).collect()
     }
 
-    /// The relMSE of one sample per pixel under each of these plans, about; infinite where a plan cannot make what the pilot saw.
-    pub fn errors(&self, stages: &[Stage]) -> Vec<f64> {
-        let importance = self.importance();
-        stages.iter().map(|stage| self.error(stage, &importance)).collect()
+    /// Σ sums / Σ samples of a block, or of those nearest to it that have samples.
+    fn around(&self, block: usize, sums: &[f64], samples: &[f64]) -> f64 {
+        let (columns, rows) = (self.columns, self.sizes.len() / self.columns);
+        let near = |at: usize, radius: usize, end: usize| at.saturating_sub(radius)..(at + radius + 1).min(end);
+        for radius in 0..columns.max(rows) {
+            let window =
+                near(block / columns, radius, rows).flat_map(|y| near(block % columns, radius, columns).map(move |x| y * columns + x));
+            let (sum, n) = window.fold((0.0, 0.0), |(sum, n), block| (sum + sums[block], n + samples[block]));
+            if n > 0.0 {
+                return sum / n;
+            }
+        }
+        0.0
     }
 
-    fn error(&self, stage: &Stage, importance: &[f64]) -> f64 {
+    /// The relMSE, trimmed, of renders by these plans that have so many samples per pixel, times their number;
+    /// infinite where a plan cannot make what the pilot saw.
+    pub fn errors(&self, plans: &[(Stage, f64)]) -> Vec<f64> {
+        let importance = self.importance();
+        plans.iter().map(|(stage, samples)| self.error(stage, *samples, &importance)).collect()
+    }
+
+    fn error(&self, stage: &Stage, samples: f64, importance: &[f64]) -> f64 {
         let counts = Counts::of(stage);
-        let mut camera = 0.0;
-        for (block, paths) in self.places() {
-            let mut runs = [Run::default(); 2];
-            for (number, path) in paths.enumerate() {
-                counts.sample(path, &mut runs[number % 2]);
-            }
-            camera += Run::variance(&runs) * importance[block as usize];
+        let per_sample = 1.0 / self.samples().max(1) as f64;
+        let mut moments = Moments::default();
+        let blocks = self.places.iter().map(|place| place.block).zip(self.camera_of_places());
+        for (block, brought) in blocks.flat_map(|(block, all)| all.iter().map(move |brought| (block, brought))) {
+            moments.take(&counts, brought, importance[block as usize], per_sample);
         }
-        let splats: f64 = self.splats.iter().map(|(block, brought)| counts.moment(brought) * importance[*block as usize]).sum();
-        camera / self.places.len().max(1) as f64 + splats / self.walks.max(1.0)
+        for (block, brought) in &self.splats {
+            moments.take(&counts, brought, importance[*block as usize], per_sample);
+        }
+        if moments.missed {
+            return f64::INFINITY;
+        }
+        let rare = moments.rarest(ENOUGH * per_sample);
+        let cut = moments.cut(TRIM / samples.max(1.0));
+        let mut spread = Spread::default();
+        for (block, paths) in self.places() {
+            spread.place(&counts, paths, importance[block as usize], rare);
+        }
+        let splats: f64 = self.splats.iter().map(|(block, brought)| counts.splat(brought, importance[*block as usize], rare)).sum();
+        spread.at(samples) + splats * per_sample + moments.kept(rare, &cut) + samples * self.left_out(&counts, &cut, importance)
+    }
+
+    /// What is missing from the pixels where nothing came of what is trimmed: the mean square of it.
+    fn left_out(&self, counts: &Counts, cut: &Cut, importance: &[f64]) -> f64 {
+        let mut missing = vec![0.0; self.sizes.len()];
+        let mut paths_of = vec![0.0_f64; self.sizes.len()];
+        for (block, paths) in self.places() {
+            let at = block as usize;
+            for path in paths {
+                paths_of[at] += 1.0;
+                missing[at] += path.iter().map(|brought| cut.left_of(counts, brought, importance[at])).sum::<f64>();
+            }
+        }
+        missing.iter_mut().zip(paths_of).for_each(|(missing, paths)| *missing /= paths.max(1.0));
+        for (block, brought) in &self.splats {
+            let at = *block as usize;
+            missing[at] += cut.left_of(counts, brought, importance[at]) * self.pixels / (self.samples() as f64 * self.sizes[at]);
+        }
+        let weighed =
+            missing.iter().zip(importance).zip(&self.sizes).map(|((missing, importance), size)| missing * missing * importance * size);
+        weighed.sum::<f64>() / self.pixels
     }
 }
 
@@ -158,31 +248,6 @@ struct Counts {
     of: [f64; Join::COUNT],
     /// How often two pairs of vertices of the same two walks are both connected.
     both_connected: f64,
-}
-
-/// What a run of camera paths would have brought.
-#[derive(Clone, Copy, Debug, Default)]
-struct Run {
-    samples: f64,
-    total: f64,
-    /// What the second moments of single paths, by all that the pilot saw, exceed those of the plan's own samples by.
-    unseen: f64,
-    /// What making only some of the connections adds.
-    rationed: f64,
-}
-
-impl Run {
-    /// Of one camera path.
-    fn variance([a, b]: &[Self; 2]) -> f64 {
-        if a.samples == 0.0 || b.samples == 0.0 {
-            return 0.0;
-        }
-        let samples = a.samples + b.samples;
-        let apart = a.total / a.samples - b.total / b.samples;
-        // Var(a − b) = σ² (1/m + 1/n).
-        let seen = apart * apart * a.samples * b.samples / samples;
-        seen + (a.unseen + b.unseen + a.rationed + b.rationed) / samples
-    }
 }
 
 impl Counts {
@@ -197,31 +262,242 @@ impl Counts {
         brought.shares.iter().zip(self.of).map(|(share, count)| share * count).sum()
     }
 
-    fn moment(&self, brought: &Brought) -> f64 {
-        if brought.value == 0.0 { 0.0 } else { brought.value * brought.value / self.density(brought) }
+    /// Whether the plan makes such a path so much more seldom than the pilot did that it may never have seen one itself.
+    /// What the lens sees directly it sees with every sample.
+    fn elusive(&self, brought: &Brought) -> bool {
+        brought.technique.length() > 1 && self.density(brought) < ELUSIVE
     }
 
-    /// One more camera path.
-    fn sample(&self, path: &[Brought], run: &mut Run) {
-        let (mut connected, mut squares) = (0.0, 0.0);
-        for one in path {
-            let join = one.technique.join();
-            let count = self.of[join as usize];
-            run.unseen += self.moment(one);
-            if count == 0.0 {
-                continue;
-            }
-            let value = one.value / self.density(one);
-            run.total += count * value;
-            run.unseen -= count * value * value;
-            if join == Join::Connection {
-                connected += value;
-                squares += value * value;
+    /// Whether it is elusive and at least as large as those of that bin.
+    fn rare(&self, brought: &Brought, importance: f64, rare: usize) -> bool {
+        self.elusive(brought) && Moments::bin(self.square(brought, importance)) >= rare
+    }
+
+    /// The squares of a splat, as often as the plan makes it, unless it is rare.
+    fn splat(&self, brought: &Brought, importance: f64, rare: usize) -> f64 {
+        if self.rare(brought, importance, rare) {
+            0.0
+        } else {
+            self.of[brought.technique.join() as usize] * self.square(brought, importance)
+        }
+    }
+
+    /// The square of what such a path brings.
+    fn square(&self, brought: &Brought, importance: f64) -> f64 {
+        let value = brought.value / self.density(brought);
+        value * value * importance
+    }
+}
+
+/// Second moments of contributions, by how large each one is: a power of two each.
+#[derive(Clone, Debug)]
+struct Moments {
+    bins: [Bin; Self::BINS],
+    /// Whether there is one that the plan never makes.
+    missed: bool,
+}
+
+/// Contributions of one size.
+#[derive(Clone, Copy, Debug, Default)]
+struct Bin {
+    /// How many a sample has.
+    all: f64,
+    /// How many elusive ones.
+    number: f64,
+    /// The sum of their squares.
+    squares: f64,
+}
+
+impl Default for Moments {
+    fn default() -> Self {
+        Self { bins: [Bin::default(); Self::BINS], missed: false }
+    }
+}
+
+impl Moments {
+    /// From 2^−64 to 2^64; what is beyond is with the last ones.
+    const BINS: usize = 128;
+
+    fn bin(square: f64) -> usize {
+        let exponent = (square.to_bits() >> 52 & 0x7ff) as i32 - 1023;
+        (exponent + Self::BINS as i32 / 2).clamp(0, Self::BINS as i32 - 1) as usize
+    }
+
+    /// A contribution of the pilot, as the plan would make it: `per` sample.
+    fn take(&mut self, counts: &Counts, brought: &Brought, importance: f64, per: f64) {
+        let density = counts.density(brought);
+        if density == 0.0 {
+            self.missed = true;
+            return;
+        }
+        let square = counts.square(brought, importance);
+        let Bin { all, number, squares } = &mut self.bins[Self::bin(square)];
+        *all += density * per;
+        if counts.elusive(brought) {
+            *number += density * per;
+            *squares += density * square * per;
+        }
+    }
+
+    /// The first bin of those largest contributions that a sample has less than so many of.
+    fn rarest(&self, number: f64) -> usize {
+        let mut sum = 0.0;
+        let past = self.bins.iter().rposition(|bin| {
+            sum += bin.number;
+            sum > number
+        });
+        past.map_or(0, |bin| bin + 1)
+    }
+
+    /// Where to cut off so many of the largest.
+    fn cut(&self, mut spare: f64) -> Cut {
+        let mut cut = Cut { bin: Self::BINS, share: 0.0 };
+        for (bin, &Bin { all: number, .. }) in self.bins.iter().enumerate().rev().filter(|(_, bin)| bin.all > 0.0) {
+            cut = Cut { bin, share: (spare / number).min(1.0) };
+            spare -= number;
+            if spare <= 0.0 {
+                break;
             }
         }
-        let count = self.of[Join::Connection as usize];
-        run.rationed += self.both_connected * (connected * connected - squares) + count * squares - count * count * connected * connected;
-        run.samples += 1.0;
+        cut
+    }
+
+    /// The second moments from that bin on, but for what is cut off.
+    fn kept(&self, from: usize, cut: &Cut) -> f64 {
+        self.bins.iter().enumerate().skip(from).map(|(bin, of)| of.squares * (1.0 - cut.share_of(bin))).sum()
+    }
+}
+
+/// What is trimmed: every contribution larger than those of this bin, and some of its.
+struct Cut {
+    bin: usize,
+    share: f64,
+}
+
+impl Cut {
+    /// What is missing where such a path is trimmed, if it is elusive.
+    fn left_of(&self, counts: &Counts, brought: &Brought, importance: f64) -> f64 {
+        let share = self.share_of(Moments::bin(counts.square(brought, importance)));
+        if share > 0.0 && counts.elusive(brought) { share * brought.value } else { 0.0 }
+    }
+
+    /// How much of a bin is trimmed.
+    fn share_of(&self, bin: usize) -> f64 {
+        match bin.cmp(&self.bin) {
+            Ordering::Less => 0.0,
+            Ordering::Equal => self.share,
+            Ordering::Greater => 1.0,
+        }
+    }
+}
+
+/// What runs of camera paths vary by, beyond the second moments of their contributions: by their length, which doubles from 1 on.
+#[derive(Clone, Copy, Debug, Default)]
+struct Spread {
+    lengths: [f64; Self::LENGTHS],
+    /// What making only some of the connections adds to all lengths.
+    all: f64,
+    /// How many lengths the runs had.
+    known: usize,
+    places: f64,
+}
+
+impl Spread {
+    /// Runs of up to 32 samples.
+    const LENGTHS: usize = 6;
+
+    /// A pixel that was looked at, with its two runs in turn; what is rare is left out of them.
+    fn place<'a>(&mut self, counts: &Counts, paths: impl Iterator<Item = &'a [Brought]>, importance: f64, rare: usize) {
+        let mut runs = [[0.0; 1 << (Self::LENGTHS - 1)]; 2];
+        let (mut number, mut all) = (0, 0.0);
+        for path in paths {
+            let mut one = Sample::default();
+            for brought in path {
+                one.add(counts, brought, importance, rare);
+            }
+            if let Some(slot) = runs[number % 2].get_mut(number / 2) {
+                *slot = one.total;
+                all += one.rationed(counts);
+                number += 1;
+            }
+        }
+        let mut length = number / 2;
+        if length == 0 {
+            return;
+        }
+        self.known = length.ilog2() as usize + 1;
+        self.places += 1.0;
+        self.all += all * importance / number as f64;
+        for level in 0..self.known {
+            // Var(a − b) = 2 σ²/m for runs of m samples; all pairs of parts of the two runs are independent.
+            let parts = runs.each_ref().map(|run| {
+                let sums = run[..length].iter().fold([0.0; 2], |[sum, squares], x| [sum + x, squares + x * x]);
+                sums.map(|sum| sum / length as f64)
+            });
+            let [a, b] = parts;
+            self.lengths[level] += importance * f64::from(1 << level) * (0.5 * (a[1] + b[1]) - a[0] * b[0]);
+            length /= 2;
+            for run in &mut runs {
+                for i in 0..length {
+                    run[i] = 0.5 * (run[2 * i] + run[2 * i + 1]);
+                }
+            }
+        }
+    }
+
+    /// Of one of so many samples per pixel.
+    fn at(&self, samples: f64) -> f64 {
+        if self.places == 0.0 {
+            return 0.0;
+        }
+        let of = |level: usize| ((self.lengths[level] + self.all) / self.places).max(0.0);
+        let last = self.known - 1;
+        // Samples of even and of odd number are two runs.
+        let level = (0.5 * samples).max(1.0).log2();
+        if level <= last as f64 {
+            let (below, part) = (level as usize, level.fract());
+            return of(below) + part * (of((below + 1).min(last)) - of(below));
+        }
+        // Beyond, it is taken to go on falling as it did.
+        let (before, reached) = (of(last.saturating_sub(2)), of(last));
+        let slope = if before > 0.0 { (reached / before).sqrt().clamp(SLOPE, 1.0) } else { 1.0 };
+        reached * slope.powf((level - last as f64).min(FARTHEST))
+    }
+}
+
+/// The least that twice the samples leave of an error beyond half of it.
+const SLOPE: f64 = 0.75;
+/// Doublings for which an error may fall so.
+const FARTHEST: f64 = 6.0;
+
+/// What a camera path and its light path would have brought.
+#[derive(Clone, Copy, Debug, Default)]
+struct Sample {
+    total: f64,
+    connected: f64,
+    squares: f64,
+}
+
+impl Sample {
+    fn add(&mut self, counts: &Counts, brought: &Brought, importance: f64, rare: usize) {
+        let join = brought.technique.join();
+        let count = counts.of[join as usize];
+        let value = brought.value / counts.density(brought);
+        if count == 0.0 || counts.rare(brought, importance, rare) {
+            return;
+        }
+        self.total += count * value;
+        if join == Join::Connection {
+            self.connected += value;
+            self.squares += value * value;
+        }
+    }
+
+    /// What making only some of the connections adds.
+    fn rationed(&self, counts: &Counts) -> f64 {
+        let count = counts.of[Join::Connection as usize];
+        let Self { connected, squares, .. } = self;
+        counts.both_connected * (connected * connected - squares) + count * squares - count * count * connected * connected
     }
 }
 
@@ -241,7 +517,7 @@ mod tests {
     use super::*;
 
     fn one_block() -> Evidence {
-        Evidence::new(vec![1.0])
+        Evidence::new(vec![1.0], 1)
     }
 
     fn brought(value: f64, s: u32, t: u32, shares: [f64; 5]) -> Brought {
@@ -261,7 +537,7 @@ mod tests {
             }
             evidence.end_place(0);
         }
-        let errors = evidence.errors(&[Stage::of(&Techniques::PATH)]);
+        let errors = evidence.errors(&[(Stage::of(&Techniques::PATH), 64.0)]);
         assert!(errors[0].abs() < 1e-12, "{errors:?}");
     }
 
@@ -276,11 +552,27 @@ mod tests {
                 }
                 evidence.end_place(0);
             }
-            evidence.errors(&[Stage::of(&Techniques::PATH)])[0]
+            [2.0, 4.0].map(|samples| evidence.errors(&[(Stage::of(&Techniques::PATH), samples)])[0] * 1.01)
         };
-        // Of two runs of two samples, each with a bright and a dark one, or one with both bright ones.
-        assert!(of(&[2.0, 2.0, 0.0, 0.0]).abs() < 1e-12);
-        assert!((of(&[2.0, 0.0, 2.0, 0.0]) - 4.0 / 1.01).abs() < 1e-9);
+        let close = |errors: [f64; 2], expected: [f64; 2]| {
+            assert!(errors.iter().zip(expected).all(|(error, expected)| (error - expected).abs() < 1e-9), "{errors:?}");
+        };
+        // Two runs of two samples, each with a bright and a dark one, or one with both bright ones. A render of two has one of each run.
+        close(of(&[2.0, 2.0, 0.0, 0.0]), [1.0, 0.0]);
+        close(of(&[2.0, 0.0, 2.0, 0.0]), [2.0, 4.0]);
+    }
+
+    #[test]
+    fn many_samples_go_on_getting_better_as_few_did() {
+        let mut evidence = one_block();
+        for value in [2.0, 2.0, 0.0, 0.0, 2.0, 2.0, 0.0, 0.0, 3.0, 3.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0] {
+            evidence.add(brought(value, 0, 2, [1.0, 0.0, 0.0, 0.0, 0.0]));
+            evidence.end_sample();
+        }
+        evidence.end_place(0);
+        let of = |samples: f64| evidence.errors(&[(Stage::of(&Techniques::PATH), samples)])[0];
+        assert!(of(2.0) > of(4.0) && of(4.0) > of(8.0) && of(16.0) <= of(8.0));
+        assert!(of(64.0) <= of(16.0) && of(64.0) >= of(16.0) * SLOPE.powi(2));
     }
 
     #[test]
@@ -295,7 +587,7 @@ mod tests {
             evidence.end_place(0);
         }
         let with = |walks: f64, connection: f64| Stage::of(&Techniques { connection, lens_splat: walks, ..Techniques::NONE });
-        let errors = evidence.errors(&[with(1.0, 1.0), with(0.25, 0.25), with(1.0, 0.5)]);
+        let errors = evidence.errors(&[with(1.0, 1.0), with(0.25, 0.25), with(1.0, 0.5)].map(|stage| (stage, 1e6)));
         assert!(errors[0].abs() < 1e-12, "{errors:?}");
         // All four times as bright in every fourth sample: 4 − 1; each of two halves twice as bright in every other: (1 + ½) − 1.
         assert!((errors[1] - 3.0 / 1.01).abs() < 1e-9 && (errors[2] - 0.5 / 1.01).abs() < 1e-9, "{errors:?}");
@@ -314,10 +606,16 @@ mod tests {
             evidence.end_place(0);
         }
         let counts = |light_hit: f64, lens_splat: f64| Stage::of(&Techniques { light_hit, lens_splat, ..Techniques::NONE });
-        let errors = evidence.errors(&[counts(1.0, 1.0), counts(1.0, 0.0), counts(0.0, 0.0), counts(1.0, 2.0)]);
-        assert!((errors[1] / errors[0] - 100.0).abs() < 1e-9, "{errors:?}");
+        let plans = [counts(1.0, 1.0), counts(1.0, 0.0), counts(0.0, 0.0), counts(1.0, 2.0)];
+        // So many samples that nothing is trimmed.
+        let errors = evidence.errors(&plans.map(|stage| (stage, 1e9)));
+        assert!((errors[1] / errors[0] - 100.0).abs() < 1e-6, "{errors:?}");
         assert!(errors[2].is_infinite());
-        assert!((errors[0] / errors[3] - 1.99).abs() < 1e-9, "{errors:?}");
+        // Two splats of each walk's, of which the pilot saw none that the camera found.
+        assert!((errors[0] / errors[3] - 1.99 * 1.99 / 2.0).abs() < 1e-6, "{errors:?}");
+        // So few that the rare path would be on less than a thousandth of the pixels: what is missing is its mean, everywhere.
+        let few = evidence.errors(&[(counts(1.0, 0.0), 1.0)])[0];
+        assert!((few - errors[0] / 20.0).abs() < 1e-9, "{few} {errors:?}");
     }
 
     #[test]
@@ -333,8 +631,30 @@ mod tests {
         let (mut ab, mut ba) = (part(1.0), part(3.0));
         ab.merge(part(3.0));
         ba.merge(part(1.0));
-        let stage = [Stage::of(&Techniques::PATH)];
+        let stage = [(Stage::of(&Techniques::PATH), 64.0)];
         assert_eq!(ab.errors(&stage), ba.errors(&stage));
         assert_eq!(ab.samples(), 4);
+    }
+
+    #[test]
+    fn every_other_pixel_is_forgotten() {
+        let of = |turns: &[u32]| {
+            let mut evidence = one_block();
+            for &turn in turns {
+                for i in 0..turn {
+                    evidence.add(brought(f64::from(turn * i), 0, 2, HALF));
+                    evidence.splat(0, brought(1.0, 3, 1, HALF));
+                    evidence.end_sample();
+                }
+                evidence.end_place(0);
+            }
+            evidence
+        };
+        let mut evidence = of(&[2, 4, 3, 6, 5]);
+        evidence.thin();
+        let expected = of(&[4, 6]);
+        assert_eq!((evidence.samples(), evidence.len(), evidence.splats.len()), (10, 10, 10));
+        let plan = [(Stage::of(&Techniques::BIDIRECTIONAL), 64.0)];
+        assert_eq!(evidence.errors(&plan), expected.errors(&plan));
     }
 }

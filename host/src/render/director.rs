@@ -8,7 +8,7 @@ use super::{Job, Status, Target, pilot::Pilot};
 use crate::{
     plan::{
         Plan, Stage,
-        choice::{Choice, broadest, choose, open},
+        choice::{Choice, Until, broadest, choose, open},
         effects::Effects,
     },
     scene::{
@@ -64,16 +64,16 @@ impl Director for Given {
 const SHARE: f64 = 0.02;
 
 /// Pixels that the first pilot looks at, at least and at most.
-const FIRST: [f64; 2] = [64.0, 1_024.0];
+const FIRST: [f64; 2] = [32.0, 1_024.0];
 
 /// About how many camera paths one of the pilot's pixels costs.
-const PATHS_PER_PIXEL: f64 = 90.0;
+const PATHS_PER_PIXEL: f64 = 150.0;
+
+/// Samples per pixel that a render is taken to need where nobody knows.
+const UNKNOWN: f64 = 256.0;
 
 /// Pilots come again when a render has taken so many times as long as when the last one came.
 const AGAIN: f64 = 4.0;
-
-/// How often pilots come again.
-const MOST_AGAIN: u32 = 5;
 
 /// A plan that a pilot finds before the first sample, and looks after as the render goes on.
 #[derive(Debug)]
@@ -87,7 +87,6 @@ pub struct Auto {
     pixels: f64,
     /// When the next pilot comes, in time that the render took.
     again: Duration,
-    left: u32,
     /// Wall-clock time of all pilots.
     pub elapsed: Duration,
 }
@@ -105,7 +104,6 @@ impl Auto {
             integrator: description.integrator.clone(),
             pixels: f64::from(crop.width) * f64::from(crop.height),
             again: Duration::MAX,
-            left: MOST_AGAIN,
             elapsed: Duration::ZERO,
         }
     }
@@ -127,7 +125,7 @@ impl Auto {
         if self.open.len() > 1 {
             self.pilot.look(scene, job, time, pixels);
             // Where nothing varies that was seen, there may be something that was not.
-            self.choice = choose(&self.open, self.pilot.evidence(), &self.pilot.costs(), under_way.as_ref())
+            self.choice = choose(&self.open, self.pilot.evidence(), &self.pilot.costs(), self.until(job), under_way.as_ref())
                 .filter(|choice| choice.chosen.error.is_some_and(|error| error > 0.0));
         }
         let chosen = match &self.choice {
@@ -138,6 +136,15 @@ impl Auto {
             self.plan.stages.push(Stage { from, ..chosen });
         }
         self.elapsed += start.elapsed();
+    }
+
+    /// How long the render goes on, as far as that is known.
+    fn until(&self, job: &Job) -> Until {
+        match job.target {
+            Target::Samples(samples) => Until::Samples(f64::from(samples)),
+            Target::Time(time) => Until::Nanoseconds(time.as_nanos() as f64 * job.threads as f64 / self.pixels),
+            Target::Error(_) => Until::Samples(UNKNOWN),
+        }
     }
 
     /// How long the first pilot may take on each thread, and how many pixels it may look at.
@@ -157,8 +164,7 @@ impl Director for Auto {
             let (time, pixels) = self.first(job.target);
             self.look(scene, job, time, pixels, status.samples);
             self.again = self.elapsed.mul_f64(2.0 / SHARE);
-        } else if status.elapsed >= self.again && self.left > 0 && self.open.len() > 1 {
-            self.left -= 1;
+        } else if status.elapsed >= self.again && self.open.len() > 1 {
             let time = status.elapsed.mul_f64(SHARE).saturating_sub(self.elapsed);
             self.look(scene, job, time, u64::MAX / 2, status.samples);
             self.again = status.elapsed.mul_f64(AGAIN);

@@ -26,13 +26,13 @@ use crate::{
 };
 
 /// Pixels that one round looks at.
-const ROUND: u32 = 16;
+const ROUND: u32 = 8;
 
 /// Samples of each of them, half of them in either run.
-const SAMPLES: u32 = 16;
+const SAMPLES: u32 = 32;
 
 /// Of these, how many costs are measured with.
-const TIMED: usize = 4;
+const TIMED: usize = 8;
 
 /// About how many blocks the image has.
 const BLOCKS: f64 = 256.0;
@@ -69,7 +69,7 @@ struct Part {
 
 /// What costs are told from.
 const PATH: usize = 0;
-const TWICE: usize = 1;
+const BARE: usize = 1;
 const LIGHT: usize = 2;
 const ALL: usize = 3;
 
@@ -88,11 +88,13 @@ impl Blocks {
         Self { crop, edge, columns: crop.width.div_ceil(edge) }
     }
 
-    fn sizes(&self) -> Vec<f64> {
+    /// Evidence of an image in these blocks.
+    fn evidence(&self) -> Evidence {
         let rows = self.crop.height.div_ceil(self.edge);
         let length = |index: u32, whole: u32| f64::from(self.edge.min(whole - index * self.edge));
         let of = |row, column| length(row, self.crop.height) * length(column, self.crop.width);
-        (0..rows).flat_map(|row| (0..self.columns).map(move |column| (row, column))).map(|(row, column)| of(row, column)).collect()
+        let sizes = (0..rows).flat_map(|row| (0..self.columns).map(move |column| (row, column))).map(|(row, column)| of(row, column));
+        Evidence::new(sizes.collect(), self.columns as usize)
     }
 
     /// The block of a raster position, if it is within the window.
@@ -111,7 +113,7 @@ impl Pilot {
         let Crop { x, y, width, height } = settings.crop;
         let crop = Crop { x, y, width: width.min(FILM), height: height.min(FILM) };
         let small = FilmSettings { crop, ..settings.clone() };
-        Self { evidence: Evidence::new(blocks.sizes()), spent: Spent::default(), blocks, techniques, small, rounds: 0 }
+        Self { evidence: blocks.evidence(), spent: Spent::default(), blocks, techniques, small, rounds: 0 }
     }
 
     /// What was seen.
@@ -123,8 +125,8 @@ impl Pilot {
     /// How deep paths go is the job's.
     pub fn look(&mut self, scene: &Scene, job: &Job, time: Duration, pixels: u64) {
         let threads = job.threads.max(1) as u64;
-        if self.evidence.len() >= MOST_KEPT {
-            return;
+        if self.evidence.len() >= MOST_KEPT / 2 {
+            self.evidence.thin();
         }
         let rounds = pixels.div_ceil(u64::from(ROUND)).div_ceil(threads).max(1);
         let first = self.rounds;
@@ -157,7 +159,7 @@ impl Pilot {
         let view = View::new(scene, job.strictness);
         let strategy = Strategy { techniques: self.techniques, heuristic: Heuristic::Balance, ..job.strategy };
         let (mut camera_path, mut light_path) = (storage(&strategy), storage(&strategy));
-        let mut kept = Kept { evidence: Evidence::new(self.blocks.sizes()), blocks: self.blocks, weighed: (1.0, ByJoin::NONE) };
+        let mut kept = Kept { evidence: self.blocks.evidence(), blocks: self.blocks, weighed: (1.0, ByJoin::NONE) };
         let mut timing = Timing { spent: Spent::default(), film: Film::new(&self.small).ok()?, crop: self.small.crop };
         // The render's own numbers, of a seed that is not the render's.
         let sources: Vec<N> = (0..SAMPLES).map(|index| N::new(!job.seed, index)).collect();
@@ -196,7 +198,7 @@ impl Pilot {
         let each = self.spent.nanoseconds.map(|ns| ns / self.spent.samples.max(1.0));
         Costs {
             camera_path: each[PATH],
-            next_event: (each[TWICE] - each[PATH]).max(0.0),
+            next_event: (each[PATH] - each[BARE]).max(0.0),
             light_path: each[LIGHT],
             connections: (each[ALL] - each[PATH] - each[LIGHT]).max(0.0),
         }
@@ -216,7 +218,7 @@ impl Kept {
         let Contribution { value, weight, technique } = *contribution;
         let value = f64::from(value.mean()) * f64::from(weight);
         let shares = shares(technique, self.weighed.0, |join| self.weighed.1.of(join));
-        let whole = value.is_finite() && shares.iter().all(|share| share.is_finite());
+        let whole = value.is_finite() && value != 0.0 && shares.iter().all(|share| share.is_finite());
         whole.then_some(Brought { value, technique, shares })
     }
 }
@@ -260,10 +262,10 @@ struct Timing {
 impl Timing {
     /// Samples these pixels in each of the ways that costs are told from.
     fn round<N: Source>(&mut self, view: &View, all: &Strategy, places: &[[u32; 2]], sources: &[N]) {
-        let Techniques { next_event, lens_splat, lens_hit, .. } = all.techniques;
+        let Techniques { lens_splat, lens_hit, .. } = all.techniques;
         let path = Techniques { connection: 0.0, lens_splat: 0.0, lens_hit: 0.0, ..all.techniques };
         let light = Techniques { lens_splat, lens_hit, ..Techniques::NONE };
-        let ways = [path, Techniques { next_event: 2.0 * next_event, ..path }, light, all.techniques];
+        let ways = [path, Techniques { next_event: 0.0, ..path }, light, all.techniques];
         for (techniques, nanoseconds) in ways.into_iter().zip(&mut self.spent.nanoseconds) {
             let strategy = Strategy { techniques, ..*all };
             let (mut camera_path, mut light_path) = (storage(&strategy), storage(&strategy));

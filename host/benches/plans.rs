@@ -1,0 +1,288 @@
+//! How good the plans are that `auto` chooses: `cargo bench -p bidir --bench plans [-- SCENE]... [seconds=4] [seeds=8]`.
+//!
+//! Every plan that a scene leaves open, and `path`, `light` and `bdpt`, render it for about the same CPU time on one thread, in turn, and
+//! so does `auto`, whose pilots are within its time. Efficiency is 1/(relMSE · CPU seconds), the error trimmed by 0.1 %, against a reference
+//! in two halves, the time by its median over the seeds. The best fixed plan is chosen by one half of the seeds and scored by the other, both ways: chosen and scored by the same
+//! ones it would be the luckiest. Behind the measured figures of each plan stands what `auto`'s last pilot of the first seed predicted.
+
+use std::{path::Path, sync::atomic::AtomicBool, time::Duration};
+
+use bidir::{
+    compare::against_halves,
+    film::Film,
+    image::{Image, read},
+    load,
+    plan::{
+        Named, Stage,
+        choice::{Candidate, Choice, open},
+        effects::Effects,
+        words,
+    },
+    plugin::{Library, Strictness},
+    render::{self, Always, Auto, Director, Job, Numbers, Target},
+    scene::{Scene, description::Description},
+};
+use cpu_time::ProcessTime;
+
+/// Scenes of `examples/scenes` with references from elsewhere, at 128×128 pixels.
+const REFERENCED: [&str; 6] = ["cornell", "torchiere", "caustic_sphere", "veach_mis", "env_glossy", "dof_glossy"];
+/// Scenes that are rendered for long, at 64×64 pixels.
+const OWN: [&str; 8] = [
+    "examples/scenes/welcome.xml",
+    "plugins/velvet/scene.xml",
+    "plugins/thin_film/scene.xml",
+    "plugins/coated_mirror/scene.xml",
+    "plugins/leaf/scene.xml",
+    "plugins/sky/scene.xml",
+    "plugins/gobo/scene.xml",
+    "plugins/ies_spot/scene.xml",
+];
+/// How many times as long as one picture each half of a reference of these takes.
+const LONG: f64 = 12.0;
+/// Plans that have less than this share of the best one's efficiency after a first look are not looked at again.
+const HOPELESS: f64 = 0.7;
+/// Times that seeds are drawn anew for the intervals.
+const DRAWS: u64 = 1000;
+
+fn main() {
+    let words: Vec<String> = std::env::args().skip(1).filter(|word| !word.starts_with('-')).collect();
+    let number = |name: &str, usual: f64| {
+        let given = words.iter().find_map(|word| word.strip_prefix(name)?.strip_prefix('='));
+        given.map_or(usual, |value| value.parse().expect("a number"))
+    };
+    let (seconds, seeds) = (number("seconds", 4.0), number("seeds", 8.0) as u64);
+    let names: Vec<&String> = words.iter().filter(|word| !word.contains('=')).collect();
+    let wanted = |name: &str| names.is_empty() || names.iter().any(|part| name.contains(part.as_str()));
+    let mut found = Vec::new();
+    for name in REFERENCED.into_iter().chain(OWN).filter(|name| wanted(name)) {
+        found.push(Subject::new(name, seconds).measure(seconds, seeds));
+    }
+    println!("\n{:<34}{:>10}{:>18}{:>12}{:>12}", "auto over", "best", "90 %", "path", "bdpt");
+    for Found { name, best, over } in &found {
+        println!("{name:<34}{:>10.3}{:>9.3} – {:.3}{:>12.2}{:>12.2}", best[1], best[0], best[2], over[0], over[1]);
+    }
+    let mean = |of: &dyn Fn(&Found) -> f64| (found.iter().map(|one| of(one).ln()).sum::<f64>() / found.len() as f64).exp();
+    println!(
+        "{:<34}{:>10.3}{:>18}{:>12.2}{:>12.2}",
+        "geometric mean",
+        mean(&|f| f.best[1]),
+        "",
+        mean(&|f| f.over[0]),
+        mean(&|f| f.over[1])
+    );
+}
+
+struct Subject {
+    name: &'static str,
+    description: Description,
+    scene: Scene,
+    effects: Effects,
+    halves: [Image; 2],
+}
+
+/// What came out for a scene.
+struct Found {
+    name: &'static str,
+    /// `auto`'s efficiency over that of the best fixed plan: the lower end of the interval, the figure, the upper end.
+    best: [f64; 3],
+    /// Over that of path and of bdpt.
+    over: [f64; 2],
+}
+
+/// One picture: its error and its time.
+#[derive(Clone, Copy)]
+struct Run {
+    relmse: f64,
+    seconds: f64,
+    samples: u32,
+}
+
+/// The pictures of one plan, seed by seed.
+struct Entrant {
+    stage: Stage,
+    runs: Vec<Run>,
+}
+
+impl Subject {
+    fn new(name: &'static str, seconds: f64) -> Self {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+        let referenced = REFERENCED.contains(&name);
+        let file = if referenced { root.join("examples/scenes").join(name).join("scene.xml") } else { root.join(name) };
+        let defines = [("res".to_owned(), if referenced { "128" } else { "64" }.to_owned())];
+        let library = Library::new(vec![root.join("plugins/prebuilt")]);
+        let description = load::load(&file, &defines, &library).expect("a scene").description;
+        let scene = Scene::new(&description).expect("a scene");
+        let effects = Effects::of(&description, &scene);
+        let mut subject = Self { name, description, scene, effects, halves: [Image::black(1, 1), Image::black(1, 1)] };
+        subject.halves = if referenced {
+            ["reference.a.exr", "reference.b.exr"].map(|half| picture(&file.with_file_name(half)))
+        } else {
+            [1, 2].map(|half| subject.long(LONG * seconds, half << 32))
+        };
+        subject
+    }
+
+    /// Half a reference: the broadest plan, which leaves nothing rare.
+    fn long(&self, seconds: f64, seed: u64) -> Image {
+        let target = Target::Time(Duration::from_secs_f64(seconds));
+        self.render(&mut Always, &self.job(&Stage::BIDIRECTIONAL, seed, target)).0
+    }
+
+    fn job(&self, stage: &Stage, seed: u64, target: Target) -> Job {
+        Job {
+            strategy: stage.strategy(&self.description.integrator),
+            seed,
+            numbers: Numbers::default(),
+            threads: 1,
+            target,
+            width: self.description.film.width,
+            strictness: Strictness::Strict,
+        }
+    }
+
+    fn render(&self, director: &mut impl Director, job: &Job) -> (Image, f64, u32) {
+        let film = Film::new(&self.description.film).expect("a film");
+        let clock = ProcessTime::now();
+        let status = render::directed(&self.scene, &film, job, director, &AtomicBool::new(false), |_| None);
+        assert!(status.fault.is_none(), "{:?}", status.fault);
+        (film.develop(), clock.elapsed().as_secs_f64(), status.samples)
+    }
+
+    fn run(&self, director: &mut impl Director, job: &Job) -> Run {
+        let (image, seconds, samples) = self.render(director, job);
+        let halves = [&self.halves[0], &self.halves[1]];
+        Run { relmse: against_halves(&image, halves).expect("one size").relmse_trimmed.max(f64::MIN_POSITIVE), seconds, samples }
+    }
+
+    /// A fixed plan for about that long.
+    fn fixed(&self, stage: &Stage, seed: u64, seconds: f64) -> Run {
+        let (_, time, samples) = self.render(&mut Always, &self.job(stage, seed, Target::Samples(2)));
+        let samples = (seconds * f64::from(samples) / time).round().max(2.0) as u32;
+        self.run(&mut Always, &self.job(stage, seed, Target::Samples(samples)))
+    }
+
+    fn auto(&self, seed: u64, seconds: f64) -> (Run, Option<Choice>) {
+        let mut auto = Auto::new(&self.description, &self.effects);
+        let job = self.job(&Stage::BIDIRECTIONAL, seed, Target::Time(Duration::from_secs_f64(seconds)));
+        let run = self.run(&mut auto, &job);
+        println!(
+            "  seed {seed}: {} in {:.1} ms",
+            auto.plan().stages.iter().map(words::stage).collect::<Vec<_>>().join("; then "),
+            1e3 * auto.elapsed.as_secs_f64()
+        );
+        (run, auto.choice().cloned())
+    }
+
+    fn measure(&self, seconds: f64, seeds: u64) -> Found {
+        println!("\n{}", self.name);
+        let named = [Named::Path, Named::Bdpt, Named::Light].map(|named| named.stage().expect("a plan"));
+        let mut stages = open(&self.effects, self.description.integrator.max_depth);
+        stages.extend(named);
+        let mut number = 0;
+        let all = stages.clone();
+        stages.retain(|stage| {
+            number += 1;
+            !all[number..].iter().any(|later| same(stage, later))
+        });
+        let mut entrants: Vec<Entrant> = stages.into_iter().map(|stage| Entrant { stage, runs: Vec::new() }).collect();
+        for seed in [101, 102] {
+            entrants.iter_mut().for_each(|entrant| entrant.runs.push(self.fixed(&entrant.stage, seed, seconds / 4.0)));
+        }
+        let best = entrants.iter().map(|entrant| entrant.efficiency(&[0, 1])).fold(0.0, f64::max);
+        entrants.retain(|entrant| named[..2].contains(&entrant.stage) || entrant.efficiency(&[0, 1]) >= HOPELESS * best);
+        entrants.iter_mut().for_each(|entrant| entrant.runs.clear());
+        let (mut auto, mut choice) = (Entrant { stage: named[0], runs: Vec::new() }, None);
+        for seed in 0..seeds {
+            let (run, chosen) = self.auto(seed, seconds);
+            auto.runs.push(run);
+            choice = choice.or(chosen);
+            entrants.iter_mut().for_each(|entrant| entrant.runs.push(self.fixed(&entrant.stage, seed, seconds)));
+        }
+        self.report(&entrants, &auto, choice.as_ref(), &named)
+    }
+
+    fn report(&self, entrants: &[Entrant], auto: &Entrant, choice: Option<&Choice>, named: &[Stage]) -> Found {
+        let all: Vec<usize> = (0..auto.runs.len()).collect();
+        let mut order: Vec<&Entrant> = entrants.iter().collect();
+        order.sort_by(|a, b| b.efficiency(&all).total_cmp(&a.efficiency(&all)));
+        println!("  {:<72}{:>12}{:>10}{:>12}{:>12}", "", "efficiency", "error·n", "cost", "predicted");
+        println!("  {:<72}{:>12.4e}", "auto", auto.efficiency(&all));
+        let pixels = f64::from(self.description.film.crop.width) * f64::from(self.description.film.crop.height);
+        for entrant in order {
+            let predicted = choice.and_then(|choice| choice.candidates.iter().find(|other| same(&other.stage, &entrant.stage)));
+            let of = |value: &dyn Fn(&Candidate) -> f64| predicted.map_or(f64::NAN, value);
+            let [error, time] = entrant.figures(&all);
+            println!(
+                "  {:<72}{:>12.4e}{:>9.4}{:>8.0} ns{:>12.4e}{:>9.4}{:>8.0} ns",
+                words::stage(&entrant.stage) + if entrant.stage.next_event == 0.0 { " (no next event)" } else { "" },
+                entrant.efficiency(&all),
+                error,
+                1e9 * time / pixels,
+                of(&|c| 1e9 / pixels * c.efficiency()),
+                of(&|c| c.error.unwrap_or(f64::INFINITY)),
+                of(&|c| c.cost),
+            );
+        }
+        let against =
+            |name: &Stage| auto.efficiency(&all) / entrants.iter().find(|e| same(&e.stage, name)).map_or(f64::NAN, |e| e.efficiency(&all));
+        let mut random = Random(3);
+        let halves = [all.iter().copied().step_by(2).collect::<Vec<_>>(), all.iter().copied().skip(1).step_by(2).collect()];
+        let mut drawn: Vec<f64> = (0..DRAWS)
+            .map(|_| ratio(entrants, auto, &halves, &mut |half| half.iter().map(|_| half[random.below(half.len())]).collect()))
+            .collect();
+        drawn.sort_by(f64::total_cmp);
+        let at = |share: f64| drawn[(share * (drawn.len() - 1) as f64) as usize];
+        let best = [at(0.05), ratio(entrants, auto, &halves, &mut |half| half.to_vec()), at(0.95)];
+        let over = [against(&named[0]), against(&named[1])];
+        println!(
+            "  auto over the best fixed plan {:.3} ({:.3} – {:.3}), over path {:.2}, over bdpt {:.2}",
+            best[1], best[0], best[2], over[0], over[1]
+        );
+        Found { name: self.name, best, over }
+    }
+}
+
+/// `auto` over the fixed plan that is best by one half of the seeds, scored by the other; the geometric mean of both ways.
+fn ratio(entrants: &[Entrant], auto: &Entrant, halves: &[Vec<usize>; 2], draw: &mut dyn FnMut(&[usize]) -> Vec<usize>) -> f64 {
+    let mut one = |chosen_by: &[usize], scored_by: &[usize]| {
+        let best = entrants.iter().max_by(|a, b| a.efficiency(chosen_by).total_cmp(&b.efficiency(chosen_by)));
+        let seeds = draw(scored_by);
+        best.map_or(f64::NAN, |best| auto.efficiency(&seeds) / best.efficiency(&seeds))
+    };
+    (one(&halves[0], &halves[1]) * one(&halves[1], &halves[0])).sqrt()
+}
+
+impl Entrant {
+    /// relMSE times samples in the mean, and CPU seconds of a sample in the median: these machines have other work to do.
+    fn figures(&self, seeds: &[usize]) -> [f64; 2] {
+        let error = seeds.iter().map(|&seed| self.runs[seed].relmse * f64::from(self.runs[seed].samples)).sum::<f64>() / seeds.len() as f64;
+        let mut times: Vec<f64> = seeds.iter().map(|&seed| self.runs[seed].seconds / f64::from(self.runs[seed].samples)).collect();
+        times.sort_by(f64::total_cmp);
+        [error, 0.5 * (times[(times.len() - 1) / 2] + times[times.len() / 2])]
+    }
+
+    fn efficiency(&self, seeds: &[usize]) -> f64 {
+        let [error, time] = self.figures(seeds);
+        1.0 / (error * time)
+    }
+}
+
+/// Whether two stages differ only in what a pinhole cannot do.
+fn same(a: &Stage, b: &Stage) -> bool {
+    let counts = |stage: &Stage| [stage.next_event, stage.connection, stage.lens_splat];
+    counts(a) == counts(b) && (a.light_hit == b.light_hit || a.techniques().camera_walk() == b.techniques().camera_walk())
+}
+
+fn picture(file: &Path) -> Image {
+    let pixels = read::read(file, read::Encoding::Linear).expect("a reference");
+    Image { width: pixels.width, height: pixels.height, pixels: pixels.values.into_iter().map(|value| value.0).collect() }
+}
+
+struct Random(u64);
+
+impl Random {
+    fn below(&mut self, count: usize) -> usize {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 33) as usize % count
+    }
+}
