@@ -206,8 +206,9 @@ impl Subject {
         let mut order: Vec<&Entrant> = entrants.iter().collect();
         order.sort_by(|a, b| b.efficiency(&all).total_cmp(&a.efficiency(&all)));
         println!("  {:<72}{:>12}{:>10}{:>12}{:>12}", "", "efficiency", "error·n", "cost", "predicted");
-        println!("  {:<72}{:>12.4e}", "auto", auto.efficiency(&all));
         let pixels = f64::from(self.description.film.crop.width) * f64::from(self.description.film.crop.height);
+        let [error, time] = auto.figures(&all);
+        println!("  {:<72}{:>12.4e}{:>9.4}{:>8.0} ns", "auto", auto.efficiency(&all), error, 1e9 * time / pixels);
         for entrant in order {
             let predicted = choice.and_then(|choice| choice.candidates.iter().find(|other| same(&other.stage, &entrant.stage)));
             let of = |value: &dyn Fn(&Candidate) -> f64| predicted.map_or(f64::NAN, value);

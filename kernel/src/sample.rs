@@ -30,8 +30,12 @@ pub fn sample<'s, S: Scene, F: Film>(
 ) {
     let techniques = &strategy.techniques;
     let joined_length = strategy.joined_length(camera_path.len().min(light_path.len()));
-    let seen = if techniques.camera_walk() { camera_walk(scene, strategy, joined_length, sampler, raster, camera_path, film) } else { 0 };
-    for number in 0..light_walks(techniques, sampler) {
+    let walks = light_walks(techniques, sampler);
+    // What no light walk comes to is not kept.
+    let kept = if walks > 0 { camera_path.len() } else { 0 };
+    let kept = &mut camera_path[..kept];
+    let seen = if techniques.camera_walk() { camera_walk(scene, strategy, joined_length, sampler, raster, kept, film) } else { 0 };
+    for number in 0..walks {
         let lit = light_walk(scene, strategy, joined_length, number, sampler, light_path, film);
         if seen > 0 && lit > 0 {
             let ration = ration(techniques, number, sampler);

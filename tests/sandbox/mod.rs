@@ -4,6 +4,7 @@ mod batches;
 mod bits;
 mod delta;
 mod lights;
+mod metered;
 mod natively;
 mod twins;
 

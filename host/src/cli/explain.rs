@@ -192,7 +192,7 @@ mod tests {
     fn paths_that_nothing_finds_are_said_aloud_with_a_remedy() {
         let report = report(CAUSTIC);
         let words = text::of(&report);
-        assert!(words.contains("L S+ D+ S+ E") && words.contains("caustics, seen in a mirror or through clear glass"), "{words}");
+        assert!(words.contains("L S+ D S+ E") && words.contains("caustics, seen in a mirror or through clear glass"), "{words}");
         assert!(words.contains("area emitter"), "{words}");
         assert!(words.contains("a pinhole cannot be hit"), "{words}");
     }

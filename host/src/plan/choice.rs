@@ -3,7 +3,7 @@
 use bidir_kernel::{Join, Techniques};
 use serde::Serialize;
 
-use super::{Stage, effects::Effects, evidence::Evidence, joins::possible};
+use super::{Stage, effects::Effects, evidence::Evidence, joins::possible, plugins::Plugin};
 
 /// Light paths per camera path that are tried.
 const WALKS: [f64; 5] = [0.0, 0.25, 0.5, 1.0, 2.0];
@@ -86,6 +86,19 @@ pub struct Choice {
     pub camera_paths: usize,
     /// What each kind of join costs and saves.
     pub joins: Vec<Worth>,
+    /// What calls of plugins take, module by module.
+    pub plugins: Vec<Plugin>,
+    /// What would be best if these took no time; `None` where no plugin is called.
+    pub without_plugins: Option<Candidate>,
+}
+
+impl Choice {
+    /// What would be best if samples cost so much.
+    pub(super) fn at(&self, costs: &Costs) -> Candidate {
+        let dearer = |candidate: &Candidate| Candidate { cost: costs.of(&candidate.stage), ..*candidate };
+        let all = self.candidates.iter().map(dearer);
+        all.max_by(|a, b| a.efficiency().total_cmp(&b.efficiency())).unwrap_or(self.chosen)
+    }
 }
 
 /// What a kind of join costs and saves.
@@ -160,7 +173,8 @@ pub fn choose(open: &[Stage], evidence: &Evidence, costs: &Costs, until: Until, 
         cost: (1.0 - left.cost / chosen.cost).max(0.0),
         error_without: left.error.zip(chosen.error).map(|(without, with)| without / with.max(f64::MIN_POSITIVE)),
     });
-    Some(Choice { chosen, joins: joins.collect(), costs: *costs, camera_paths: evidence.samples(), candidates: all })
+    let (joins, camera_paths) = (joins.collect(), evidence.samples());
+    Some(Choice { chosen, joins, costs: *costs, camera_paths, candidates: all, plugins: Vec::new(), without_plugins: None })
 }
 
 impl Stage {

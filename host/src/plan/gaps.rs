@@ -39,9 +39,9 @@ pub fn gaps(effects: &Effects, plan: &Stage, max_depth: Option<u32>) -> Vec<Gap>
             if nothing_to_see || finds(effects, plan, landable, &bends) {
                 continue;
             }
-            let class = class(&bends);
+            let class = class(&bends, |longer| !finds(effects, plan, landable, longer));
             if !found.iter().any(|gap| gap.class == class && gap.lights == lights) {
-                let remedy = remedy(effects, landable, &bends);
+                let remedy = remedy(effects, plan, landable, &bends);
                 found.push(Gap { class, lights, what: what(effects, &bends), remedy });
             }
         }
@@ -85,11 +85,16 @@ fn patterns(effects: &Effects, max_depth: Option<u32>) -> Vec<Bends> {
     all
 }
 
-/// The letters, repeated ones once.
-fn class(bends: &[bool]) -> String {
+/// The letters, repeated ones once; without + where a D more makes it a path that is found.
+fn class(bends: &[bool], is_missing: impl Fn(&[bool]) -> bool) -> String {
     let mut runs = bends.to_vec();
     runs.dedup();
-    let middle: String = runs.iter().map(|&smooth| if smooth { "D+ " } else { "S+ " }).collect();
+    let letters = |(at, &smooth): (usize, &bool)| match smooth {
+        false => "S+ ",
+        true if is_missing(&[&runs[..at], &[true], &runs[at..]].concat()) => "D+ ",
+        true => "D ",
+    };
+    let middle: String = runs.iter().enumerate().map(letters).collect();
     format!("L {middle}E")
 }
 
@@ -113,12 +118,17 @@ fn what(effects: &Effects, bends: &[bool]) -> String {
 }
 
 /// What would bring the class into the image.
-fn remedy(effects: &Effects, landable: bool, bends: &[bool]) -> String {
-    if finds(effects, &Stage::BIDIRECTIONAL, landable, bends) {
-        return "use every technique (--integrator bdpt)".to_owned();
+fn remedy(effects: &Effects, plan: &Stage, landable: bool, bends: &[bool]) -> String {
+    const EVERY: &str = "use every technique (--integrator bdpt)";
+    let all = Stage::BIDIRECTIONAL;
+    if finds(effects, &all, landable, bends) {
+        return EVERY.to_owned();
     }
-    "give the light an area (a small shape with an area emitter), or the camera a lens (thinlens), or the mirror or glass a little roughness"
-        .to_owned()
+    let size = "give the light an area (a small shape with an area emitter), or the camera a lens (thinlens), or the mirror or glass a little \
+                roughness";
+    // Two D in a row are open to connections, if there are any.
+    let connects = bends.contains(&true) && plan.connection == 0.0;
+    if connects { format!("{size}; where two D follow each other, {EVERY}") } else { size.to_owned() }
 }
 
 #[cfg(test)]
@@ -144,7 +154,7 @@ mod tests {
 
     #[test]
     fn a_point_lights_caustic_in_a_mirror_is_out_of_a_pinholes_reach() {
-        assert_eq!(classes(point(), Named::Bdpt, None), ["L S+ E", "L S+ D+ S+ E"]);
+        assert_eq!(classes(point(), Named::Bdpt, None), ["L S+ E", "L S+ D S+ E"]);
         assert_eq!(classes(point(), Named::Bdpt, Some(3)), ["L S+ E"]);
         let gaps = gaps(&point(), &Named::Bdpt.stage().unwrap(), None);
         assert!(gaps.iter().all(|gap| gap.remedy.contains("area emitter")));
@@ -166,9 +176,17 @@ mod tests {
     }
 
     #[test]
+    fn two_matt_surfaces_in_a_row_are_connected_if_anything_is() {
+        let splats = Stage { connection: 0.0, ..Stage::BIDIRECTIONAL };
+        let [.., gap] = &gaps(&point(), &splats, None)[..] else { panic!("a gap") };
+        assert_eq!(gap.class, "L S+ D+ S+ E");
+        assert!(gap.remedy.contains("area emitter") && gap.remedy.contains("bdpt"), "{}", gap.remedy);
+    }
+
+    #[test]
     fn a_light_that_is_seen_straight_is_no_gap() {
         let null =
             Effects { dirac_lights: true, diffuse: true, delta_transmission: true, straight_transmission: true, ..Effects::default() };
-        assert_eq!(classes(null, Named::Bdpt, None), ["L S+ D+ S+ E"]);
+        assert_eq!(classes(null, Named::Bdpt, None), ["L S+ D S+ E"]);
     }
 }

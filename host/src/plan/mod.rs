@@ -1,6 +1,6 @@
 //! The plan: which techniques a render runs, how they share a path, and what it rests on: what a scene holds ([`contents`]),
 //! what can happen to light in it ([`effects`]), which joins that leaves ([`joins`]), what none of them finds ([`gaps`]),
-//! and what a pilot measured ([`evidence`]), from which the best is chosen ([`choice`]).
+//! and what a pilot measured ([`evidence`], [`plugins`]), from which the best is chosen ([`choice`]).
 
 pub mod choice;
 pub mod contents;
@@ -8,6 +8,7 @@ pub mod effects;
 pub mod evidence;
 pub mod gaps;
 pub mod joins;
+pub mod plugins;
 pub mod words;
 
 use std::path::Path;

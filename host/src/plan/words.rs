@@ -3,6 +3,7 @@
 use super::{
     Stage,
     choice::{Candidate, Choice},
+    plugins::Plugin,
 };
 
 /// What a stage samples.
@@ -66,15 +67,15 @@ fn against(choice: &Choice) -> String {
 
 /// The plan card: what was chosen, what it rests on, and what would change it.
 pub fn card(choice: &Choice) -> Vec<String> {
-    let Choice { chosen, candidates, costs, camera_paths, joins } = choice;
+    let Choice { chosen, candidates, costs, camera_paths, joins, plugins, without_plugins } = choice;
     let mut lines = vec![
         format!("auto: {}", stage(&chosen.stage)),
         format!(
-            "from a pilot of {camera_paths} camera paths, each with a light path; relMSE at one sample per pixel about {}",
+            "from a pilot of {camera_paths} camera paths, each with a light path; relMSE times samples per pixel about {}",
             error(chosen)
         ),
         format!(
-            "a camera path takes {}, one next event more {}, a light path {}, all connections {}",
+            "a camera path takes {}, {} of it next event; a light path {}, all connections {}",
             time(costs.camera_path),
             time(costs.next_event),
             time(costs.light_path),
@@ -88,12 +89,36 @@ pub fn card(choice: &Choice) -> Vec<String> {
         };
         lines.push(format!("{:<11} {:>4} of the time; {saved}", worth.join.replace('_', " "), share(worth.cost)));
     }
+    let other = without_plugins.map(|other| other.stage).filter(|other| other.techniques() != chosen.stage.techniques());
+    // What neither takes time nor decides is left out.
+    lines.extend(plugins.iter().filter(|plugin| other.is_some() || plugin.share >= 0.01).map(plugin));
     let against = against(choice);
     if !against.is_empty() {
         lines.push(against);
     }
     lines.extend(candidates.iter().find(|other| other.stage != chosen.stage && other.error.is_some()).map(|other| change(chosen, other)));
+    if without_plugins.is_some() {
+        let words = other.map_or("this plan would be chosen too".to_owned(), |other| format!("it would be: {}", stage(&other)));
+        lines.push(format!("if calls of plugins took no time, {words}"));
+    }
     lines
+}
+
+/// A plugin's part in a sample, and where its calls come from.
+fn plugin(plugin: &Plugin) -> String {
+    let Plugin { module, calls, nanoseconds, share: part, calls_in } = plugin;
+    let [camera, light, connected] = [calls_in.camera_path, calls_in.light_path, calls_in.connections].map(count);
+    format!(
+        "plugin {module}: {} calls of {} a sample, {} of the time; {camera} in a camera path, {light} in a light path, \
+         {connected} in all connections",
+        count(*calls),
+        time(*nanoseconds),
+        share(*part),
+    )
+}
+
+fn count(calls: f64) -> String {
+    if calls < 1.0 { format!("{calls:.2}") } else { format!("{calls:.1}") }
 }
 
 /// What would make the next best plan the best one.

@@ -68,6 +68,8 @@ pub(super) struct Instance {
     blocks: u32,
     /// Ticks spent in calls.
     spent: u64,
+    /// Calls so far.
+    calls: u64,
 }
 
 enum Functions {
@@ -88,7 +90,7 @@ impl Instance {
         let bytes = records + blocks.len() as u32;
         begin(&mut store);
         let region = scratch.call(&mut store, bytes).map_err(|error| failure(export::SCRATCH, cause(&error, Cause::Trap)))?;
-        let mut instance = Self { store, memory, functions, clock, region, blocks: region.saturating_add(records), spent: 0 };
+        let mut instance = Self { store, memory, functions, clock, region, blocks: region.saturating_add(records), spent: 0, calls: 0 };
         instance.take_region(bytes)?;
         instance.write(instance.block(0), blocks);
         Ok(instance)
@@ -119,6 +121,11 @@ impl Instance {
     /// Of its memory, as large as it is now.
     pub(super) fn memory_bytes(&self) -> usize {
         self.memory.data_size(&self.store)
+    }
+
+    /// How often it was called.
+    pub(super) fn calls(&self) -> u64 {
+        self.calls
     }
 
     /// Writes parameters. The place must lie in the host's region.
@@ -225,6 +232,7 @@ impl Instance {
         if let Err(error) = done {
             return Err(failure(export, cause(&error, Cause::Trap)));
         }
+        self.calls += 1;
         self.spent += self.clock.now() - start;
         if self.spent > TILE_TICKS { Err(failure(export, Cause::Slow)) } else { Ok(()) }
     }

@@ -3,7 +3,9 @@
 use std::{
     cell::{Cell, RefCell},
     fmt,
+    path::Path,
     sync::Arc,
+    time::Instant,
 };
 
 use bidir_abi::{EmitOut, EvalOut, EvalRecord, ProfileOut, SampleOut, VertexOut, carried};
@@ -13,6 +15,7 @@ use super::{
     answer::{self, Flaw},
     fault::{Cause, Fault},
     instance::{Failure, Instance},
+    meter::{Meter, Metered},
     module::Module,
     parameters::Value,
     quarantine::{Asked, Quarantine, Quarantined},
@@ -90,9 +93,12 @@ pub struct Sandbox {
     slots: Vec<RefCell<Slot>>,
     strictness: Strictness,
     tile: Cell<u64>,
+    /// Whether a call broke off or calls are metered: all that a question has to look at beforehand.
+    unusual: Cell<bool>,
     faulted: Cell<bool>,
     fault: RefCell<Option<Fault>>,
     quarantine: RefCell<Quarantine>,
+    meter: RefCell<Option<Meter>>,
 }
 
 #[derive(Default)]
@@ -114,9 +120,11 @@ impl Sandbox {
             roster,
             strictness,
             tile: Cell::new(0),
+            unusual: Cell::new(false),
             faulted: Cell::new(false),
             fault: RefCell::new(None),
             quarantine: RefCell::default(),
+            meter: RefCell::default(),
         }
     }
 
@@ -144,6 +152,21 @@ impl Sandbox {
     /// The bad answers so far.
     pub fn quarantine(&self) -> Quarantine {
         self.quarantine.borrow().clone()
+    }
+
+    /// The modules' files, in the order of [`Sandbox::metered`].
+    pub fn files(&self) -> impl Iterator<Item = &Path> {
+        self.roster.entries.iter().map(|entry| entry.module.file())
+    }
+
+    /// Does some work, and tells what each module was asked in it. A clock is read around each question, so the work takes longer;
+    /// without this, nothing is spent on telling.
+    pub fn metered<T>(&self, work: impl FnOnce() -> T) -> (T, Vec<Metered>) {
+        self.meter.replace(Some(Meter::new(self.slots.len())));
+        self.unusual.set(true);
+        let done = work();
+        self.unusual.set(self.faulted.get());
+        (done, self.meter.take().map(Meter::read).unwrap_or_default())
     }
 
     /// The shader as a surface.
@@ -182,9 +205,29 @@ impl Sandbox {
     /// Calls into a shader's instance.
     #[inline]
     fn ask<T>(&self, id: ShaderId, question: impl FnOnce(&mut Instance, u32) -> std::result::Result<T, Failure>) -> Option<T> {
+        if self.unusual.get() { self.ask_metered(id, question) } else { self.put(id, question) }
+    }
+
+    /// The same with a look at the clock before and after, but for what it takes to make an instance.
+    #[cold]
+    #[inline(never)]
+    fn ask_metered<T>(&self, id: ShaderId, question: impl FnOnce(&mut Instance, u32) -> std::result::Result<T, Failure>) -> Option<T> {
         if self.faulted.get() {
             return None;
         }
+        self.put(id, |instance, block| {
+            let (before, start) = (instance.calls(), Instant::now());
+            let done = question(instance, block);
+            let took = start.elapsed();
+            if let Some(meter) = &mut *self.meter.borrow_mut() {
+                meter.add(id.module as usize, instance.calls() - before, took);
+            }
+            done
+        })
+    }
+
+    #[inline(always)]
+    fn put<T>(&self, id: ShaderId, question: impl FnOnce(&mut Instance, u32) -> std::result::Result<T, Failure>) -> Option<T> {
         let mut slot = self.slots[id.module as usize].borrow_mut();
         let done = match &mut slot.instance {
             Some(instance) => {
@@ -215,6 +258,7 @@ impl Sandbox {
     #[cold]
     fn break_off(&self, id: ShaderId, failure: Failure) {
         self.faulted.set(true);
+        self.unusual.set(true);
         self.fault.borrow_mut().get_or_insert_with(|| self.roster.entries[id.module as usize].module.fault(*failure));
     }
 

@@ -126,7 +126,8 @@ impl Auto {
             self.pilot.look(scene, job, time, pixels);
             // Where nothing varies that was seen, there may be something that was not.
             self.choice = choose(&self.open, self.pilot.evidence(), &self.pilot.costs(), self.until(job), under_way.as_ref())
-                .filter(|choice| choice.chosen.error.is_some_and(|error| error > 0.0));
+                .filter(|choice| choice.chosen.error.is_some_and(|error| error > 0.0))
+                .map(|choice| choice.with_plugins(&self.pilot.plugins()));
         }
         let chosen = match &self.choice {
             Some(choice) => choice.chosen.stage,

@@ -1,10 +1,13 @@
 //! The pilot: a few samples all over the image, by every technique, that tell plans apart. Nothing of them comes onto the film.
 
+mod calls;
+
 use std::time::Duration;
 
 use bidir_kernel::{ByJoin, Contribution, Heuristic, Rivals, Sampler, Strategy, Techniques, Together, Vec2, Walk, sample};
 use cpu_time::ThreadTime;
 
+use self::calls::Metering;
 use super::{
     Job,
     numbers::{Apart, Numbers, Sobol, Source},
@@ -17,6 +20,7 @@ use crate::{
         effects::Effects,
         evidence::{Brought, Evidence, shares},
         joins::possible,
+        plugins::Measured,
     },
     scene::{
         Scene,
@@ -48,6 +52,7 @@ const FILM: u32 = 64;
 pub struct Pilot {
     evidence: Evidence,
     spent: Spent,
+    calls: Metering,
     blocks: Blocks,
     techniques: Techniques,
     small: FilmSettings,
@@ -57,21 +62,48 @@ pub struct Pilot {
 /// CPU time of each kind of sample, and how many there were.
 #[derive(Clone, Copy, Debug, Default)]
 struct Spent {
-    nanoseconds: [f64; 4],
+    nanoseconds: [f64; WAYS],
     samples: f64,
+}
+
+impl Spent {
+    /// Nanoseconds of a sample of each kind.
+    fn each(&self) -> [f64; WAYS] {
+        self.nanoseconds.map(|ns| ns / self.samples.max(1.0))
+    }
 }
 
 /// What one thread has seen.
 struct Part {
     evidence: Evidence,
     spent: Spent,
+    calls: Metering,
 }
 
 /// What costs are told from.
+const WAYS: usize = 4;
 const PATH: usize = 0;
 const BARE: usize = 1;
 const LIGHT: usize = 2;
 const ALL: usize = 3;
+
+/// The ways of sampling that costs are told from, if a plan has all of these techniques.
+fn ways(all: &Techniques) -> [Techniques; WAYS] {
+    let Techniques { lens_splat, lens_hit, .. } = *all;
+    let path = Techniques { connection: 0.0, lens_splat: 0.0, lens_hit: 0.0, ..*all };
+    let light = Techniques { lens_splat, lens_hit, ..Techniques::NONE };
+    [path, Techniques { next_event: 0.0, ..path }, light, *all]
+}
+
+/// What the parts of a sample cost, from what samples of each way do.
+fn parts(each: [f64; WAYS]) -> Costs {
+    Costs {
+        camera_path: each[PATH],
+        next_event: (each[PATH] - each[BARE]).max(0.0),
+        light_path: each[LIGHT],
+        connections: (each[ALL] - each[PATH] - each[LIGHT]).max(0.0),
+    }
+}
 
 /// The image in blocks.
 #[derive(Clone, Copy, Debug)]
@@ -113,7 +145,7 @@ impl Pilot {
         let Crop { x, y, width, height } = settings.crop;
         let crop = Crop { x, y, width: width.min(FILM), height: height.min(FILM) };
         let small = FilmSettings { crop, ..settings.clone() };
-        Self { evidence: blocks.evidence(), spent: Spent::default(), blocks, techniques, small, rounds: 0 }
+        Self { evidence: blocks.evidence(), spent: Spent::default(), calls: Metering::default(), blocks, techniques, small, rounds: 0 }
     }
 
     /// What was seen.
@@ -143,7 +175,8 @@ impl Pilot {
             workers.into_iter().filter_map(|worker| worker.join().ok().flatten()).collect()
         });
         self.rounds += rounds * threads;
-        for Part { evidence, spent } in parts {
+        for Part { evidence, spent, calls } in parts {
+            self.calls.merge(calls);
             self.evidence.merge(evidence);
             for (all, one) in self.spent.nanoseconds.iter_mut().zip(spent.nanoseconds) {
                 *all += one;
@@ -161,6 +194,7 @@ impl Pilot {
         let (mut camera_path, mut light_path) = (storage(&strategy), storage(&strategy));
         let mut kept = Kept { evidence: self.blocks.evidence(), blocks: self.blocks, weighed: (1.0, ByJoin::NONE) };
         let mut timing = Timing { spent: Spent::default(), film: Film::new(&self.small).ok()?, crop: self.small.crop };
+        let mut calls = Metering::of(view.sandbox());
         // The render's own numbers, of a seed that is not the render's.
         let sources: Vec<N> = (0..SAMPLES).map(|index| N::new(!job.seed, index)).collect();
         for round in rounds {
@@ -176,6 +210,7 @@ impl Pilot {
                 kept.evidence.end_place(block);
             }
             timing.round(&view, &strategy, &places, &sources[..TIMED]);
+            calls.round(&view, &strategy, &places, &sources[..calls::SAMPLES]);
             if view.sandbox().faulted() {
                 return None;
             }
@@ -183,7 +218,7 @@ impl Pilot {
                 break;
             }
         }
-        Some(Part { evidence: kept.evidence, spent: timing.spent })
+        Some(Part { evidence: kept.evidence, spent: timing.spent, calls })
     }
 
     /// The pixel that is looked at in turn: everywhere alike, by the additive recurrence of the plastic number (Roberts 2018).
@@ -195,13 +230,12 @@ impl Pilot {
 
     /// What samples cost.
     pub fn costs(&self) -> Costs {
-        let each = self.spent.nanoseconds.map(|ns| ns / self.spent.samples.max(1.0));
-        Costs {
-            camera_path: each[PATH],
-            next_event: (each[PATH] - each[BARE]).max(0.0),
-            light_path: each[LIGHT],
-            connections: (each[ALL] - each[PATH] - each[LIGHT]).max(0.0),
-        }
+        parts(self.spent.each())
+    }
+
+    /// What calls of plugins take of that.
+    pub fn plugins(&self) -> Measured {
+        self.calls.measured(self.spent.each())
     }
 }
 
@@ -262,11 +296,7 @@ struct Timing {
 impl Timing {
     /// Samples these pixels in each of the ways that costs are told from.
     fn round<N: Source>(&mut self, view: &View, all: &Strategy, places: &[[u32; 2]], sources: &[N]) {
-        let Techniques { lens_splat, lens_hit, .. } = all.techniques;
-        let path = Techniques { connection: 0.0, lens_splat: 0.0, lens_hit: 0.0, ..all.techniques };
-        let light = Techniques { lens_splat, lens_hit, ..Techniques::NONE };
-        let ways = [path, Techniques { next_event: 0.0, ..path }, light, all.techniques];
-        for (techniques, nanoseconds) in ways.into_iter().zip(&mut self.spent.nanoseconds) {
+        for (techniques, nanoseconds) in ways(&all.techniques).into_iter().zip(&mut self.spent.nanoseconds) {
             let strategy = Strategy { techniques, ..*all };
             let (mut camera_path, mut light_path) = (storage(&strategy), storage(&strategy));
             let clock = ThreadTime::now();

@@ -1,0 +1,3 @@
+//! What `auto` chooses, and why.
+
+mod slow_plugin;
