@@ -1,6 +1,7 @@
 //! Estimators agree: path tracing, light tracing and both heuristics of bidirectional path tracing make one picture.
 
 mod cameras;
+mod everywhere;
 mod lights;
 mod plans;
 mod surfaces;
