@@ -103,6 +103,15 @@ struct Entrant {
     runs: Vec<Run>,
 }
 
+/// A picture by the plan that `auto` chose.
+struct Chosen {
+    run: Run,
+    stages: Vec<Stage>,
+    /// CPU seconds of its pilots.
+    pilots: f64,
+    choice: Option<Choice>,
+}
+
 impl Subject {
     fn new(name: &'static str, seconds: f64) -> Self {
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
@@ -156,21 +165,27 @@ impl Subject {
 
     /// A fixed plan for about that long.
     fn fixed(&self, stage: &Stage, seed: u64, seconds: f64) -> Run {
-        let (_, time, samples) = self.render(&mut Always, &self.job(stage, seed, Target::Samples(2)));
-        let samples = (seconds * f64::from(samples) / time).round().max(2.0) as u32;
-        self.run(&mut Always, &self.job(stage, seed, Target::Samples(samples)))
+        self.fixed_with(&mut Always, stage, seed, seconds)
     }
 
-    fn auto(&self, seed: u64, seconds: f64) -> (Run, Option<Choice>) {
+    fn fixed_with(&self, director: &mut impl Director, stage: &Stage, seed: u64, seconds: f64) -> Run {
+        let (_, time, samples) = self.render(&mut Always, &self.job(stage, seed, Target::Samples(4)));
+        let samples = (seconds * f64::from(samples) / time).round().max(2.0) as u32;
+        self.run(director, &self.job(stage, seed, Target::Samples(samples)))
+    }
+
+    /// Looks, and renders with what is left of the time.
+    fn auto(&self, seed: u64, seconds: f64) -> Chosen {
         let mut auto = Auto::new(&self.description, &self.effects);
         let job = self.job(&Stage::BIDIRECTIONAL, seed, Target::Time(Duration::from_secs_f64(seconds)));
-        let run = self.run(&mut auto, &job);
-        println!(
-            "  seed {seed}: {} in {:.1} ms",
-            auto.plan().stages.iter().map(words::stage).collect::<Vec<_>>().join("; then "),
-            1e3 * auto.elapsed.as_secs_f64()
-        );
-        (run, auto.choice().cloned())
+        let clock = ProcessTime::now();
+        auto.begin(&self.scene, &job);
+        let pilot = clock.elapsed().as_secs_f64();
+        let stage = *auto.plan().last().expect("a plan");
+        let run = self.fixed_with(&mut auto, &stage, seed, seconds - pilot);
+        let stages = auto.plan().stages.clone();
+        println!("  seed {seed}: {} after {:.0} ms", stages.iter().map(words::stage).collect::<Vec<_>>().join("; then "), 1e3 * pilot);
+        Chosen { run, stages, pilots: pilot, choice: auto.choice().cloned() }
     }
 
     fn measure(&self, seconds: f64, seeds: u64) -> Found {
@@ -189,28 +204,29 @@ impl Subject {
             entrants.iter_mut().for_each(|entrant| entrant.runs.push(self.fixed(&entrant.stage, seed, seconds / 4.0)));
         }
         let best = entrants.iter().map(|entrant| entrant.efficiency(&[0, 1])).fold(0.0, f64::max);
-        entrants.retain(|entrant| named[..2].contains(&entrant.stage) || entrant.efficiency(&[0, 1]) >= HOPELESS * best);
+        let auto: Vec<Chosen> = (0..seeds).map(|seed| self.auto(seed, seconds)).collect();
+        let is_chosen = |stage: &Stage| auto.iter().any(|chosen| chosen.stages.iter().any(|other| same(other, stage)));
+        entrants.retain(|entrant| {
+            named[..2].contains(&entrant.stage) || is_chosen(&entrant.stage) || entrant.efficiency(&[0, 1]) >= HOPELESS * best
+        });
         entrants.iter_mut().for_each(|entrant| entrant.runs.clear());
-        let (mut auto, mut choice) = (Entrant { stage: named[0], runs: Vec::new() }, None);
         for seed in 0..seeds {
-            let (run, chosen) = self.auto(seed, seconds);
-            auto.runs.push(run);
-            choice = choice.or(chosen);
             entrants.iter_mut().for_each(|entrant| entrant.runs.push(self.fixed(&entrant.stage, seed, seconds)));
         }
-        self.report(&entrants, &auto, choice.as_ref(), &named)
+        self.report(&entrants, &auto, &named)
     }
 
-    fn report(&self, entrants: &[Entrant], auto: &Entrant, choice: Option<&Choice>, named: &[Stage]) -> Found {
-        let all: Vec<usize> = (0..auto.runs.len()).collect();
+    fn report(&self, entrants: &[Entrant], auto: &[Chosen], named: &[Stage]) -> Found {
+        let all: Vec<usize> = (0..auto.len()).collect();
+        let auto = &Judged { entrants, chosen: auto, seeds: all.clone() };
         let mut order: Vec<&Entrant> = entrants.iter().collect();
         order.sort_by(|a, b| b.efficiency(&all).total_cmp(&a.efficiency(&all)));
         println!("  {:<72}{:>12}{:>10}{:>12}{:>12}", "", "efficiency", "error·n", "cost", "predicted");
         let pixels = f64::from(self.description.film.crop.width) * f64::from(self.description.film.crop.height);
-        let [error, time] = auto.figures(&all);
-        println!("  {:<72}{:>12.4e}{:>9.4}{:>8.0} ns", "auto", auto.efficiency(&all), error, 1e9 * time / pixels);
+        println!("  {:<72}{:>12.4e}", "auto", auto.efficiency(&all));
         for entrant in order {
-            let predicted = choice.and_then(|choice| choice.candidates.iter().find(|other| same(&other.stage, &entrant.stage)));
+            let predicted =
+                auto.chosen[0].choice.as_ref().and_then(|choice| choice.candidates.iter().find(|other| same(&other.stage, &entrant.stage)));
             let of = |value: &dyn Fn(&Candidate) -> f64| predicted.map_or(f64::NAN, value);
             let [error, time] = entrant.figures(&all);
             println!(
@@ -244,13 +260,37 @@ impl Subject {
 }
 
 /// `auto` over the fixed plan that is best by one half of the seeds, scored by the other; the geometric mean of both ways.
-fn ratio(entrants: &[Entrant], auto: &Entrant, halves: &[Vec<usize>; 2], draw: &mut dyn FnMut(&[usize]) -> Vec<usize>) -> f64 {
+fn ratio(entrants: &[Entrant], auto: &Judged, halves: &[Vec<usize>; 2], draw: &mut dyn FnMut(&[usize]) -> Vec<usize>) -> f64 {
     let mut one = |chosen_by: &[usize], scored_by: &[usize]| {
         let best = entrants.iter().max_by(|a, b| a.efficiency(chosen_by).total_cmp(&b.efficiency(chosen_by)));
         let seeds = draw(scored_by);
         best.map_or(f64::NAN, |best| auto.efficiency(&seeds) / best.efficiency(&seeds))
     };
     (one(&halves[0], &halves[1]) * one(&halves[1], &halves[0])).sqrt()
+}
+
+/// `auto`'s pictures, each at the price of its plan.
+struct Judged<'a> {
+    entrants: &'a [Entrant],
+    chosen: &'a [Chosen],
+    seeds: Vec<usize>,
+}
+
+impl Judged<'_> {
+    /// Of its plans' samples and its pilots. Samples are taken to cost what they did when the same plan was fixed: the other half of
+    /// what two renders differ in would be what else the machine did.
+    fn efficiency(&self, seeds: &[usize]) -> f64 {
+        let products = seeds.iter().map(|&seed| {
+            let Chosen { run, stages, pilots, .. } = &self.chosen[seed];
+            let ends = stages.iter().skip(1).map(|stage| stage.from).chain([run.samples]);
+            let of = |(stage, end): (&Stage, u32)| {
+                let entrant = self.entrants.iter().find(|entrant| same(&entrant.stage, stage)).expect("a plan that was rendered");
+                f64::from(end - stage.from) * entrant.figures(&self.seeds)[1]
+            };
+            run.relmse * (pilots + stages.iter().zip(ends).map(of).sum::<f64>())
+        });
+        seeds.len() as f64 / products.sum::<f64>()
+    }
 }
 
 impl Entrant {

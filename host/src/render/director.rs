@@ -148,6 +148,13 @@ impl Auto {
         }
     }
 
+    /// Looks for the first time, for about as long as a render with this target should.
+    pub fn begin(&mut self, scene: &Scene, job: &Job) {
+        let (time, pixels) = self.first(job.target);
+        self.look(scene, job, time, pixels, 0);
+        self.again = self.elapsed.mul_f64(2.0 / SHARE);
+    }
+
     /// How long the first pilot may take on each thread, and how many pixels it may look at.
     fn first(&self, target: Target) -> (Duration, u64) {
         let some = |pixels: f64| pixels.clamp(FIRST[0], FIRST[1]) as u64;
@@ -162,9 +169,7 @@ impl Auto {
 impl Director for Auto {
     fn next(&mut self, scene: &Scene, job: &Job, status: &Status) -> Leg {
         if self.plan.stages.is_empty() {
-            let (time, pixels) = self.first(job.target);
-            self.look(scene, job, time, pixels, status.samples);
-            self.again = self.elapsed.mul_f64(2.0 / SHARE);
+            self.begin(scene, job);
         } else if status.elapsed >= self.again && self.open.len() > 1 {
             let time = status.elapsed.mul_f64(SHARE).saturating_sub(self.elapsed);
             self.look(scene, job, time, u64::MAX / 2, status.samples);
