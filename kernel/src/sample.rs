@@ -28,9 +28,13 @@ pub fn sample<'s, S: Scene, F: Film>(
     light_path: &mut [Option<WalkVertex<'s, S, F::Rivals>>],
     film: &mut F,
 ) {
+    let strategy = &strategy.within(S::EFFECTS);
     let techniques = &strategy.techniques;
     let joined_length = strategy.joined_length(camera_path.len().min(light_path.len()));
     let seen = if techniques.camera_walk() { camera_walk(scene, strategy, joined_length, sampler, raster, camera_path, film) } else { 0 };
+    if !S::EFFECTS.light_walks {
+        return;
+    }
     for number in 0..light_walks(techniques, sampler) {
         let lit = light_walk(scene, strategy, joined_length, number, sampler, light_path, film);
         if seen > 0 && lit > 0 {

@@ -1,6 +1,9 @@
 //! What one call of [`sample`](crate::sample::sample) is to do.
 
-use crate::technique::{Heuristic, Join, Techniques};
+use crate::{
+    effects::Effects,
+    technique::{Heuristic, Join, Techniques},
+};
 
 /// The plan for a pass: which techniques, how they share, how far paths go.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,6 +22,21 @@ impl Strategy {
     /// These techniques with the balance heuristic and roulette from the fifth scattering on.
     pub const fn new(techniques: Techniques, max_depth: u32) -> Self {
         Self { techniques, heuristic: Heuristic::Balance, max_depth, rr_depth: 5 }
+    }
+
+    /// As much of it as those effects leave: the loop that samples and the weight that divides both ask what this returns.
+    #[inline(always)]
+    pub(crate) fn within(&self, effects: Effects) -> Self {
+        let Self { mut techniques, heuristic, max_depth, rr_depth } = *self;
+        if !effects.light_walks {
+            techniques = Techniques { connection: 0.0, lens_splat: 0.0, lens_hit: 0.0, ..techniques };
+        }
+        Self { techniques, heuristic: if effects.power_heuristic { heuristic } else { Heuristic::Balance }, max_depth, rr_depth }
+    }
+
+    /// What these techniques and their heuristic need of the kernel.
+    pub const fn effects(&self) -> Effects {
+        Effects { light_walks: self.techniques.light_walk(), power_heuristic: matches!(self.heuristic, Heuristic::Power), ..Effects::NONE }
     }
 
     /// The longest path that every technique may make when `stored` light vertices can be kept: a connection can only reach

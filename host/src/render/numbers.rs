@@ -19,7 +19,7 @@ pub enum Numbers {
 }
 
 /// The random numbers of one sample of every pixel.
-pub(super) trait Source {
+pub trait Source {
     /// Those of one pixel.
     type OfPixel<'a>: Sampler
     where
@@ -33,7 +33,7 @@ pub(super) trait Source {
 }
 
 /// [`Numbers::Independent`].
-pub(super) struct Apart {
+pub struct Apart {
     seed: u64,
     index: u32,
 }
@@ -60,7 +60,7 @@ const LENGTH: u32 = 1 << 16;
 /// Points of the Sobol' sequence for the first vertices of each walk, scrambled apart for each pixel (Burley 2020, "Practical Hash-based
 /// Owen Scrambling"). Samples of even and of odd number each go through the sequence under a scramble of their own: the two
 /// halves of a render stay independent, and with them its estimate of its own error.
-pub(super) struct Sobol {
+pub struct Sobol {
     apart: Apart,
     seed: u32,
     /// The unscrambled point, its bits reversed: the camera walk's dimensions, then the light walk's. All pixels share it.
@@ -69,7 +69,7 @@ pub(super) struct Sobol {
 
 /// The Sobol' points of one pixel's sample.
 #[derive(Clone, Copy)]
-pub(super) struct Scrambled<'a> {
+pub struct Scrambled<'a> {
     point: &'a [u32; 2 * STRATIFIED as usize],
     seed: u32,
     /// Into `point`; at its end or beyond, numbers come from `rest`.

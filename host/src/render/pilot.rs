@@ -18,9 +18,11 @@ use crate::{
         evidence::{Brought, Evidence, shares},
         joins::possible,
     },
+    plugin::Strictness,
     scene::{
         Scene,
         description::{Crop, FilmSettings},
+        preset::{Preset, Task},
         view::View,
     },
 };
@@ -173,10 +175,10 @@ impl Pilot {
                 let block = self.blocks.at(Vec2::new(place[0] as f32 + 0.5, place[1] as f32 + 0.5)).unwrap_or(0);
                 kept.evidence.end_place(block);
             }
-            timing.round(&view, &strategy, &places, &sources[..TIMED]);
             if view.sandbox().faulted() {
                 return None;
             }
+            timing.round(scene, job.strictness, round, &strategy, &places, &sources[..TIMED])?;
             if clock.elapsed() >= time || kept.evidence.len() * job.threads.max(1) > room {
                 break;
             }
@@ -249,7 +251,7 @@ fn begun<N: Source>(source: &N, [x, y]: [u32; 2]) -> (N::OfPixel<'_>, Vec2) {
     (numbers, Vec2::new(x as f32 + dx, y as f32 + dy))
 }
 
-/// Measures what samples cost, as a render takes them.
+/// Measures what samples cost, as a render takes them: each with the preset that a render would take.
 struct Timing {
     spent: Spent,
     film: Film,
@@ -257,29 +259,63 @@ struct Timing {
     crop: Crop,
 }
 
+/// Samples of these pixels, taken in one way.
+struct Timed<'a, N> {
+    scene: &'a Scene,
+    strictness: Strictness,
+    round: u64,
+    strategy: Strategy,
+    timing: &'a Timing,
+    places: &'a [[u32; 2]],
+    sources: &'a [N],
+}
+
 impl Timing {
-    /// Samples these pixels in each of the ways that costs are told from.
-    fn round<N: Source>(&mut self, view: &View, all: &Strategy, places: &[[u32; 2]], sources: &[N]) {
+    /// Samples these pixels in each of the ways that costs are told from; `None` where a plugin broke off.
+    fn round<N: Source>(
+        &mut self,
+        scene: &Scene,
+        strictness: Strictness,
+        round: u64,
+        all: &Strategy,
+        places: &[[u32; 2]],
+        sources: &[N],
+    ) -> Option<()> {
         let Techniques { next_event, lens_splat, lens_hit, .. } = all.techniques;
         let path = Techniques { connection: 0.0, lens_splat: 0.0, lens_hit: 0.0, ..all.techniques };
         let light = Techniques { lens_splat, lens_hit, ..Techniques::NONE };
         let ways = [path, Techniques { next_event: 2.0 * next_event, ..path }, light, all.techniques];
-        for (techniques, nanoseconds) in ways.into_iter().zip(&mut self.spent.nanoseconds) {
+        for (way, techniques) in ways.into_iter().enumerate() {
             let strategy = Strategy { techniques, ..*all };
-            let (mut camera_path, mut light_path) = (storage(&strategy), storage(&strategy));
-            let clock = ThreadTime::now();
-            let Some(mut buffer) = self.film.claim(u32::MAX) else { return };
-            for (&place, source) in places.iter().flat_map(|place| sources.iter().map(move |source| (place, source))) {
-                let (mut numbers, raster) = begun(source, place);
-                buffer.begin(raster);
-                let mut film = Within { buffer: &mut buffer, crop: self.crop };
-                sample(view, &strategy, &mut numbers, raster, &mut camera_path, &mut light_path, &mut film);
-                buffer.end();
-            }
-            self.film.commit(buffer);
-            *nanoseconds += clock.elapsed().as_nanos() as f64;
+            let timed = Timed { scene, strictness, round, strategy, timing: self, places, sources };
+            self.spent.nanoseconds[way] += scene.with_smallest_preset(strategy.effects(), timed)?;
         }
         self.spent.samples += (places.len() * sources.len()) as f64;
+        Some(())
+    }
+}
+
+impl<N: Source> Task for Timed<'_, N> {
+    /// In nanoseconds.
+    type Output = Option<f64>;
+
+    fn run<P: Preset>(self, preset: P) -> Option<f64> {
+        let Self { timing, strategy, places, sources, .. } = self;
+        let view = View::with(self.scene, preset, self.strictness);
+        view.sandbox().begin_tile(self.round);
+        let (mut camera_path, mut light_path) = (storage(&strategy), storage(&strategy));
+        let clock = ThreadTime::now();
+        let mut buffer = timing.film.claim(u32::MAX)?;
+        for (&place, source) in places.iter().flat_map(|place| sources.iter().map(move |source| (place, source))) {
+            let (mut numbers, raster) = begun(source, place);
+            buffer.begin(raster);
+            let mut film = Within { buffer: &mut buffer, crop: timing.crop };
+            sample(&view, &strategy, &mut numbers, raster, &mut camera_path, &mut light_path, &mut film);
+            buffer.end();
+        }
+        timing.film.commit(buffer);
+        let elapsed = clock.elapsed().as_nanos() as f64;
+        (!view.sandbox().faulted()).then_some(elapsed)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use bidir_kernel::{Frame, Mat3, Point, Real, Vec2, Vec3, math};
+use bidir_kernel::{Effects, Frame, Mat3, Point, Real, Vec2, Vec3, math};
 use glam::DMat3;
 
 use crate::{
@@ -88,6 +88,12 @@ fn scaled(matrix: &DMat3, sign: f64) -> Mat3 {
 const TURN: Real = 2.0 * std::f32::consts::PI;
 
 impl Shape {
+    /// What its form needs of the kernel.
+    pub fn effects(&self) -> Effects {
+        let shading_normals = matches!(&self.form, Form::Mesh(form) if !form.mesh.normals.is_empty());
+        Effects { shading_normals, ..Effects::NONE }
+    }
+
     /// The point of a hit; `triangle` is the number within a mesh.
     #[inline]
     pub fn point(&self, at: &SurfacePoint, triangle: u32) -> Point {

@@ -2,16 +2,15 @@
 
 use std::{cell::Cell, sync::Arc};
 
-use bidir_kernel::{Chance, Point, Ray, Real, Segment};
+use bidir_kernel::{Chance, Effects, Point, Ray, Real, Segment};
 
 use crate::{
     plugin::{Sandbox, Strictness},
     rays::Geometry,
     scene::{
         Scene,
-        camera::SceneCamera,
-        lights::{LightId, SceneLight},
-        surface::Surface,
+        lights::LightId,
+        preset::{Full, Preset},
     },
 };
 
@@ -31,20 +30,28 @@ impl std::ops::AddAssign for RayCounts {
     }
 }
 
-/// One thread's view of the shared scene; it holds that thread's plugins and counts its rays.
+/// One thread's view of the shared scene, as a preset has it; it holds that thread's plugins and counts its rays.
 #[derive(Debug)]
-pub struct View<'a> {
+pub struct View<'a, P = Full> {
     scene: &'a Scene,
+    preset: P,
     sandbox: Sandbox,
     closest: Cell<u64>,
     any: Cell<u64>,
 }
 
 impl<'a> View<'a> {
-    /// A view with nothing counted yet.
+    /// A view of any scene, with nothing counted yet.
     pub fn new(scene: &'a Scene, strictness: Strictness) -> Self {
+        Self::with(scene, Full {}, strictness)
+    }
+}
+
+impl<'a, P: Preset> View<'a, P> {
+    /// A view with a preset that covers the scene.
+    pub fn with(scene: &'a Scene, preset: P, strictness: Strictness) -> Self {
         let sandbox = Sandbox::new(Arc::clone(&scene.roster), strictness);
-        Self { scene, sandbox, closest: Cell::new(0), any: Cell::new(0) }
+        Self { scene, preset, sandbox, closest: Cell::new(0), any: Cell::new(0) }
     }
 
     /// This thread's plugins.
@@ -65,22 +72,23 @@ pub struct Hit {
     shape: u32,
 }
 
-impl bidir_kernel::Scene for View<'_> {
+impl<P: Preset> bidir_kernel::Scene for View<'_, P> {
+    const EFFECTS: Effects = P::EFFECTS;
     type Hit = Hit;
     type LightId = LightId;
-    type Camera = SceneCamera;
+    type Camera = P::Camera;
     type Bsdf<'a>
-        = Surface<'a>
+        = P::Bsdf<'a>
     where
         Self: 'a;
     type Light<'a>
-        = SceneLight<'a>
+        = P::Light<'a>
     where
         Self: 'a;
 
     #[inline]
-    fn camera(&self) -> &SceneCamera {
-        &self.scene.camera
+    fn camera(&self) -> &P::Camera {
+        self.preset.camera(self.scene)
     }
 
     #[inline]
@@ -98,13 +106,13 @@ impl bidir_kernel::Scene for View<'_> {
     }
 
     #[inline]
-    fn bsdf(&self, point: &Point, hit: Hit) -> Surface<'_> {
-        self.scene.finishes[self.scene.shapes[hit.shape as usize].finish as usize].at(point.uv, &self.sandbox)
+    fn bsdf(&self, point: &Point, hit: Hit) -> P::Bsdf<'_> {
+        self.preset.bsdf(self.scene, &self.sandbox, self.scene.shapes[hit.shape as usize].finish, point.uv)
     }
 
     #[inline]
-    fn light(&self, id: LightId) -> SceneLight<'_> {
-        self.scene.lights.get(id, &self.sandbox)
+    fn light(&self, id: LightId) -> P::Light<'_> {
+        self.preset.light(self.scene, &self.sandbox, id)
     }
 
     #[inline]
@@ -118,8 +126,8 @@ impl bidir_kernel::Scene for View<'_> {
     }
 
     #[inline]
-    fn pick_light(&self, lit: Option<&Point>, u: Real) -> Option<(LightId, Chance)> {
-        self.scene.lights.pick(lit, u, &self.sandbox)
+    fn pick_light(&self, lit: Option<&Point>, u: impl FnOnce() -> Real) -> Option<(LightId, Chance)> {
+        self.scene.lights.only(lit).or_else(|| self.scene.lights.pick(lit, u(), &self.sandbox))
     }
 
     #[inline]
