@@ -61,6 +61,7 @@ pub(crate) fn camera_walk<'s, S: Scene, F: Film>(
 }
 
 impl<'s, S: Scene, P: Sampler, F: Film> CameraWalk<'_, 's, S, P, F> {
+    #[inline(always)]
     fn run(&mut self, raster: Vec2, store: &mut [Option<WalkVertex<'s, S, F::Rivals>>]) -> usize {
         let Strategy { techniques, heuristic, max_depth, .. } = *self.strategy;
         let scene = self.scene;
@@ -141,6 +142,7 @@ impl<'s, S: Scene, P: Sampler, F: Film> CameraWalk<'_, 's, S, P, F> {
     }
 
     /// Two numbers for a point of the lens.
+    #[inline(always)]
     fn lens_numbers(&mut self) -> [Real; 2] {
         if !S::EFFECTS.finite_lens {
             return [0.0; 2];
@@ -151,11 +153,13 @@ impl<'s, S: Scene, P: Sampler, F: Film> CameraWalk<'_, 's, S, P, F> {
 
     /// What the vertex that this step leads to knows of the other techniques. Without light walks that is the step alone, and is asked
     /// for only where a light was hit.
+    #[inline(always)]
     fn arrived(side: &Side<F::Rivals>, heuristic: Heuristic, step: &Step) -> Side<F::Rivals> {
         if S::EFFECTS.light_walks { side.advance(heuristic, step) } else { Side::alone(heuristic, step) }
     }
 
     /// s = 0: the walk landed on the light `id` at `at`, coming from `previous`.
+    #[inline(always)]
     fn light_hit(&mut self, id: S::LightId, at: &Point, previous: &Point, direction: Vec3, delta: bool, end: &End<F::Rivals>) {
         let Strategy { techniques, heuristic, .. } = *self.strategy;
         if !techniques.uses(Join::LightHit) {
@@ -190,38 +194,37 @@ impl<'s, S: Scene, P: Sampler, F: Film> CameraWalk<'_, 's, S, P, F> {
         });
     }
 
-    /// s = 1, points of lights chosen for this vertex, and where the walk goes on; the last light and that are asked for at once.
+    /// s = 1, points of lights chosen for this vertex, and where the walk goes on.
+    #[inline(always)]
     fn lit_and_bounced(&mut self, vertex: &Vertex<'s, S>, end: &End<F::Rivals>) -> Option<Bounce> {
         let dimension = end.length.wrapping_mul(DIMENSIONS_PER_VERTEX);
         let count = if vertex.joins() { self.strategy.techniques.next_event as u32 } else { 0 };
-        let mut turn = 0;
-        loop {
-            let lit = if turn < count {
-                self.sampler.seek(Walk::Camera, dimension.wrapping_add(turn.wrapping_mul(NEXT_EVENT_STRIDE)) + vertex::ENDPOINT);
-                self.picked(&vertex.point)
-            } else {
-                None
-            };
-            turn += 1;
-            let toward = lit.as_ref().map(|lit| lit.sampled.direction);
-            let (scatter, bounce) = if turn < count {
-                (toward.and_then(|toward| vertex.scatter(toward)), None)
-            } else {
-                self.sampler.seek(Walk::Camera, dimension + vertex::BSDF);
-                vertex.scatter_and_bounce(toward, bsdf_numbers::<S>(self.sampler))
-            };
-            if let (Some(lit), Some(scatter)) = (&lit, &scatter) {
-                self.next_event(vertex, end, lit, scatter);
-            }
-            if turn >= count {
-                return bounce;
+        // The last light is asked for together with where the walk goes on.
+        let alone = if S::EFFECTS.dear_surfaces { count.saturating_sub(1) } else { count };
+        for turn in 0..alone {
+            if let Some(lit) = self.picked(&vertex.point, dimension, turn)
+                && let Some(scatter) = vertex.scatter(lit.sampled.direction)
+            {
+                self.next_event(vertex, end, &lit, &scatter);
             }
         }
+        let lit = if alone < count { self.picked(&vertex.point, dimension, alone) } else { None };
+        self.sampler.seek(Walk::Camera, dimension + vertex::BSDF);
+        let u = bsdf_numbers::<S>(self.sampler);
+        if !S::EFFECTS.dear_surfaces {
+            return vertex.bounce(u);
+        }
+        let (scatter, bounce) = vertex.scatter_and_bounce(lit.as_ref().map(|lit| lit.sampled.direction), u);
+        if let (Some(lit), Some(scatter)) = (&lit, &scatter) {
+            self.next_event(vertex, end, lit, scatter);
+        }
+        bounce
     }
 
-    /// A point of a light for this receiver, by the numbers that the sampler has come to.
+    /// A point of a light for this receiver, the `turn`th that it is lit by; its own dimensions begin at `dimension`.
     #[inline(always)]
-    fn picked(&mut self, point: &Point) -> Option<Lit<S::LightId>> {
+    fn picked(&mut self, point: &Point, dimension: u32, turn: u32) -> Option<Lit<S::LightId>> {
+        self.sampler.seek(Walk::Camera, dimension.wrapping_add(turn.wrapping_mul(NEXT_EVENT_STRIDE)) + vertex::ENDPOINT);
         let pair = self.sampler.next_pair();
         let (id, chance) = self.scene.pick_light(Some(point), || self.sampler.next())?;
         let sampled = self.scene.light(id).illuminate(point, pair)?;
@@ -229,7 +232,7 @@ impl<'s, S: Scene, P: Sampler, F: Film> CameraWalk<'_, 's, S, P, F> {
     }
 
     /// s = 1: the vertex lit by one point of a light.
-    #[inline(always)]
+    #[inline]
     fn next_event(&mut self, vertex: &Vertex<'s, S>, end: &End<F::Rivals>, lit: &Lit<S::LightId>, scatter: &Scatter) {
         let Strategy { techniques, heuristic, .. } = *self.strategy;
         let (Lit { id, chance, sampled }, point) = (lit, &vertex.point);
@@ -240,17 +243,19 @@ impl<'s, S: Scene, P: Sampler, F: Film> CameraWalk<'_, 's, S, P, F> {
         }
         let exit = sampled.exit;
         let own = heuristic.of(techniques.next_event * f64::from(chance.0) * f64::from(sampled.density.value()));
-        let mut others = F::Rivals::NONE;
         let (to_light, to_vertex) = conversions(point, &sampled.point, sampled.direction);
-        if exit.end.can_be_hit() {
-            others = others.with(Join::LightHit, heuristic.of(techniques.light_hit * f64::from(scatter.pdf.0) * to_light));
-        }
-        if S::EFFECTS.light_walks && end.joined {
-            let made = f64::from(self.scene.light_chance(*id, None).0) * f64::from(exit.end.value());
-            let across = f64::from(exit.spread.value()) * to_vertex;
-            others = others.and(end.side.sum(heuristic, across, f64::from(scatter.pdf_rev.0)).times(heuristic.of(made)));
+        let hit = if exit.end.can_be_hit() { heuristic.of(techniques.light_hit * f64::from(scatter.pdf.0) * to_light) } else { 0.0 };
+        let mut others = F::Rivals::NONE.with(Join::LightHit, hit);
+        let mut total = hit;
+        if S::EFFECTS.light_walks {
+            if end.joined {
+                let made = f64::from(self.scene.light_chance(*id, None).0) * f64::from(exit.end.value());
+                let across = f64::from(exit.spread.value()) * to_vertex;
+                others = others.and(end.side.sum(heuristic, across, f64::from(scatter.pdf_rev.0)).times(heuristic.of(made)));
+            }
+            total = others.total();
         }
         self.film.weighed(own, others);
-        self.film.add(Contribution { value, weight: share(own, others.total()) as Real, technique: Technique { s: 1, t: end.length + 1 } });
+        self.film.add(Contribution { value, weight: share(own, total) as Real, technique: Technique { s: 1, t: end.length + 1 } });
     }
 }

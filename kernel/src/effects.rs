@@ -16,6 +16,8 @@ pub struct Effects {
     pub deltas: bool,
     /// Surfaces with more than one lobe: the BSDF's third number picks among them. Where it is left out, that number is 0.
     pub lobe_choice: bool,
+    /// Surfaces that are dear to ask, as in a sandbox: a vertex then asks for next event and for the walk's next direction at once.
+    pub dear_surfaces: bool,
     /// Light bends as it passes a surface: samples whose `eta` is not 1.
     pub refraction: bool,
     /// Frames whose z is not the geometric normal.
@@ -36,6 +38,7 @@ impl Effects {
         environment: true,
         deltas: true,
         lobe_choice: true,
+        dear_surfaces: true,
         refraction: true,
         shading_normals: true,
         finite_lens: true,
@@ -50,6 +53,7 @@ impl Effects {
         environment: false,
         deltas: false,
         lobe_choice: false,
+        dear_surfaces: false,
         refraction: false,
         shading_normals: false,
         finite_lens: false,
@@ -69,15 +73,16 @@ impl Effects {
         covered
     }
 
-    const fn each(self) -> [bool; 10] {
+    const fn each(self) -> [bool; 11] {
         let Self { light_walks, power_heuristic, environment, deltas, lobe_choice, .. } = self;
-        let Self { refraction, shading_normals, finite_lens, clipping, hidden_emitters, .. } = self;
+        let Self { dear_surfaces, refraction, shading_normals, finite_lens, clipping, hidden_emitters, .. } = self;
         [
             light_walks,
             power_heuristic,
             environment,
             deltas,
             lobe_choice,
+            dear_surfaces,
             refraction,
             shading_normals,
             finite_lens,
@@ -97,6 +102,7 @@ impl BitOr for Effects {
             environment: self.environment | other.environment,
             deltas: self.deltas | other.deltas,
             lobe_choice: self.lobe_choice | other.lobe_choice,
+            dear_surfaces: self.dear_surfaces | other.dear_surfaces,
             refraction: self.refraction | other.refraction,
             shading_normals: self.shading_normals | other.shading_normals,
             finite_lens: self.finite_lens | other.finite_lens,

@@ -41,6 +41,7 @@ impl Strategy {
 
     /// The longest path that every technique may make when `stored` light vertices can be kept: a connection can only reach
     /// what was stored. Longer paths are left to s = 0 and s = 1, whose weights know it.
+    #[inline(always)]
     pub(crate) fn joined_length(&self, stored: usize) -> u32 {
         if self.techniques.uses(Join::Connection) {
             u32::try_from(stored).unwrap_or(u32::MAX).saturating_add(1).min(self.max_depth)

@@ -37,20 +37,20 @@ pub(crate) struct Bounce {
 
 impl<'s, S: Scene + 's> Vertex<'s, S> {
     /// `None` where the walk arrived on different sides of the geometric and of the shading normal.
-    #[inline]
+    #[inline(always)]
     pub fn new(point: Point, bsdf: S::Bsdf<'s>, from: Vec3, carried: Carried) -> Option<Self> {
         let wo = point.frame.to_local(from);
         same_side::<S>(&point, from, wo.z).then(|| Self { lobes: bsdf.lobes(), wo, point, bsdf, from, carried })
     }
 
     /// Whether a path can be joined here.
-    #[inline]
+    #[inline(always)]
     pub fn joins(&self) -> bool {
         self.lobes.intersects(Lobe::SMOOTH)
     }
 
     /// `toward` in the shading frame; `None` where nothing can be scattered, whatever the directions are beyond their sides.
-    #[inline]
+    #[inline(always)]
     pub fn local(&self, toward: Vec3) -> Option<Vec3> {
         let wi = self.point.frame.to_local(toward);
         if !same_side::<S>(&self.point, toward, wi.z) {
@@ -62,7 +62,7 @@ impl<'s, S: Scene + 's> Vertex<'s, S> {
 
     /// What the smooth lobes answered towards `toward`, the adjoint factor of the shading normal included;
     /// `None` where nothing is scattered there.
-    #[inline]
+    #[inline(always)]
     pub fn scattered(&self, toward: Vec3, mut scatter: Scatter) -> Option<Scatter> {
         if scatter.value.is_black() {
             return None;
@@ -74,13 +74,13 @@ impl<'s, S: Scene + 's> Vertex<'s, S> {
     }
 
     /// The smooth lobes towards `toward`.
-    #[inline]
+    #[inline(always)]
     pub fn scatter(&self, toward: Vec3) -> Option<Scatter> {
         self.scattered(toward, self.bsdf.eval(self.wo, self.local(toward)?, self.carried))
     }
 
     /// The smooth lobes towards `toward`, if there is such a direction, and where the walk goes on.
-    #[inline]
+    #[inline(always)]
     pub fn scatter_and_bounce(&self, toward: Option<Vec3>, u: [Real; 3]) -> (Option<Scatter>, Option<Bounce>) {
         let Some((toward, wi)) = toward.and_then(|toward| Some((toward, self.local(toward)?))) else { return (None, self.bounce(u)) };
         let (scatter, sampled) = self.bsdf.eval_and_sample(self.wo, wi, u, self.carried);
@@ -88,12 +88,12 @@ impl<'s, S: Scene + 's> Vertex<'s, S> {
     }
 
     /// Where the walk goes on.
-    #[inline]
+    #[inline(always)]
     pub fn bounce(&self, u: [Real; 3]) -> Option<Bounce> {
         self.gone_on(self.bsdf.sample(self.wo, u, self.carried)?)
     }
 
-    #[inline]
+    #[inline(always)]
     fn gone_on(&self, sampled: Scattered) -> Option<Bounce> {
         let Scattered { wi, weight, made, eta, .. } = sampled;
         let direction = self.point.frame.to_world(wi);

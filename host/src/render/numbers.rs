@@ -99,7 +99,7 @@ impl Source for Sobol {
 }
 
 impl Sampler for Scrambled<'_> {
-    #[inline]
+    #[inline(always)]
     fn seek(&mut self, walk: Walk, dimension: u32) {
         if dimension < STRATIFIED {
             self.next = walk as u32 * STRATIFIED + dimension;
@@ -109,14 +109,20 @@ impl Sampler for Scrambled<'_> {
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn next(&mut self) -> f32 {
-        let Some(&point) = self.point.get(self.next as usize) else { return self.rest.next() };
+        let Some(&point) = self.point.get(self.next as usize) else { return further(&mut self.rest) };
         let scramble = parts::hash(self.seed.wrapping_add(self.next.wrapping_mul(0x9e37_79b9)));
         self.next += 1;
         // The upper 24 bits fill an f32 exactly.
         (parts::owen_scramble_rev(point, scramble).reverse_bits() >> 8) as f32 * (1.0 / 16_777_216.0)
     }
+}
+
+/// What comes after the Sobol' points.
+#[inline(never)]
+fn further(rest: &mut Independent) -> f32 {
+    rest.next()
 }
 
 #[cfg(test)]

@@ -107,7 +107,7 @@ impl Scene {
     }
 
     /// The point of a hit that [`Self::geometry`] gave for this ray, and the number of its shape.
-    #[inline]
+    #[inline(always)]
     pub fn met(&self, ray: &Ray, hit: &RayHit) -> (Point, u32) {
         let owner = self.owners[hit.primitive.0 as usize];
         match owner.triangle() {
@@ -116,6 +116,7 @@ impl Scene {
         }
     }
 
+    #[inline(never)]
     fn met_in_instance(&self, ray: &Ray, hit: &RayHit, mut owner: Owner) -> (Point, u32) {
         let (mut triangle, mut first) = (0, 0);
         for inner in self.geometry.path(hit).skip(1) {

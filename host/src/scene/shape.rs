@@ -97,7 +97,7 @@ impl Shape {
     }
 
     /// The point of a hit; `triangle` is the number within a mesh.
-    #[inline]
+    #[inline(always)]
     pub fn point(&self, at: &SurfacePoint, triangle: u32) -> Point {
         self.turned(at, triangle, None)
     }

@@ -86,12 +86,12 @@ impl<P: Preset> bidir_kernel::Scene for View<'_, P> {
     where
         Self: 'a;
 
-    #[inline]
+    #[inline(always)]
     fn camera(&self) -> &P::Camera {
         self.preset.camera(self.scene)
     }
 
-    #[inline]
+    #[inline(always)]
     fn intersect(&self, ray: &Ray) -> Option<(Point, Hit)> {
         self.closest.set(self.closest.get() + 1);
         let hit = self.scene.geometry.closest(ray)?;
@@ -99,43 +99,43 @@ impl<P: Preset> bidir_kernel::Scene for View<'_, P> {
         Some((point, Hit { shape }))
     }
 
-    #[inline]
+    #[inline(always)]
     fn unoccluded(&self, a: &Point, b: &Point, segment: Segment) -> bool {
         self.any.set(self.any.get() + 1);
         !self.scene.geometry.occluded(&Ray::between(a, b, segment))
     }
 
-    #[inline]
+    #[inline(always)]
     fn bsdf(&self, point: &Point, hit: Hit) -> P::Bsdf<'_> {
         self.preset.bsdf(self.scene, &self.sandbox, self.scene.shapes[hit.shape as usize].finish, point.uv)
     }
 
-    #[inline]
+    #[inline(always)]
     fn light(&self, id: LightId) -> P::Light<'_> {
         self.preset.light(self.scene, &self.sandbox, id)
     }
 
-    #[inline]
+    #[inline(always)]
     fn light_id_at(&self, hit: Hit) -> Option<LightId> {
         self.scene.shapes[hit.shape as usize].light
     }
 
-    #[inline]
+    #[inline(always)]
     fn environment(&self) -> Option<LightId> {
         self.scene.lights.environment()
     }
 
-    #[inline]
+    #[inline(always)]
     fn pick_light(&self, lit: Option<&Point>, u: impl FnOnce() -> Real) -> Option<(LightId, Chance)> {
         self.scene.lights.only(lit).or_else(|| self.scene.lights.pick(lit, u(), &self.sandbox))
     }
 
-    #[inline]
+    #[inline(always)]
     fn light_chance(&self, id: LightId, lit: Option<&Point>) -> Chance {
         self.scene.lights.chance(id, lit, &self.sandbox)
     }
 
-    #[inline]
+    #[inline(always)]
     fn hides_emitters(&self) -> bool {
         self.scene.hides_emitters
     }
