@@ -68,7 +68,7 @@ impl<'s, S: Scene, P: Sampler, F: Film> CameraWalk<'_, 's, S, P, F> {
         let hides_emitters = S::EFFECTS.hidden_emitters && scene.hides_emitters();
         let seen = scene.camera().look(raster, self.lens_numbers());
         let (near, far) = if S::EFFECTS.clipping { (seen.near, seen.far) } else { (0.0, Real::INFINITY) };
-        let mut previous = seen.point;
+        let mut previous = seen.point.as_receiver();
         let mut direction = seen.direction;
         let origin = if S::EFFECTS.clipping { previous.position + direction * near } else { previous.position };
         let mut ray = Ray { origin, direction, t_max: far - near, segment: Segment::Lens };
@@ -133,9 +133,9 @@ impl<'s, S: Scene, P: Sampler, F: Film> CameraWalk<'_, 's, S, P, F> {
                     None => return stored,
                 }
             }
-            (previous, direction) = (point, bounce.direction);
+            (previous, direction) = (point.as_receiver(), bounce.direction);
             way = (bounce.pdf, bounce.pdf_rev, S::EFFECTS.deltas && bounce.delta);
-            ray = Ray::leaving(&previous, direction, Segment::Inner);
+            ray = Ray::leaving(&point, direction, Segment::Inner);
             length += 1;
         }
         stored

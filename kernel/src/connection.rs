@@ -134,9 +134,9 @@ fn ask<S: Scene>(vertex: &Vertex<'_, S>, end: usize, block: &mut Block, place: i
     for (row, column) in (0..BATCH).map(place) {
         let slot = &mut block[row][column];
         if let Some(pair) = slot {
-            match scatters.next().and_then(|scatter| vertex.scattered(pair.directions[end], scatter)) {
-                Some(scatter) => pair.scatters[end] = scatter,
-                None => *slot = None,
+            match scatters.next().map(|scatter| vertex.scattered(pair.directions[end], scatter)) {
+                Some(scatter) if !scatter.value.is_black() => pair.scatters[end] = scatter,
+                _ => *slot = None,
             }
         }
     }

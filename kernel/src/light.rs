@@ -55,6 +55,8 @@ pub struct Illumination {
 }
 
 /// A light. Its choice among all lights is the scene's and in none of these densities.
+///
+/// Of a receiver `lit`, nothing counts but position, geometric normal and place.
 pub trait Light {
     /// Starts a light walk with four numbers in [0, 1); `None` where nothing leaves.
     fn emit(&self, u: [Real; 4]) -> Option<Emission>;

@@ -185,7 +185,7 @@ impl<'s, S: Scene, P: Sampler, F: Film> LightWalk<'_, 's, S, P, F> {
     /// t = 1: a vertex of the walk, shown to the lens.
     fn splat(&mut self, point: &Point, length: u32, side: &Side<F::Rivals>, throughput: Spectrum, seen: &Seen, scatter: &Scatter) {
         let Strategy { techniques, heuristic, .. } = *self.strategy;
-        if !self.lens_sees(seen, point) {
+        if scatter.value.is_black() || !self.lens_sees(seen, point) {
             return;
         }
         let spread = f64::from(seen.spread.value());

@@ -54,6 +54,13 @@ impl Point {
         Self { position, normal: inward, frame: Frame::from_z(inward), uv: Vec2::ZERO, offset: Real::INFINITY, place: Place::Distant }
     }
 
+    /// As much of it as a light may ask of a receiver: position, geometric normal and place.
+    #[inline(always)]
+    pub(crate) fn as_receiver(&self) -> Self {
+        let frame = Frame { x: Vec3::ZERO, y: Vec3::ZERO, z: self.normal };
+        Self { position: self.position, normal: self.normal, frame, uv: Vec2::ZERO, offset: 0.0, place: self.place }
+    }
+
     /// Whether directions at this point are measured against a surface.
     #[inline(always)]
     pub fn is_surface(&self) -> bool {

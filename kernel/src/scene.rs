@@ -66,7 +66,8 @@ pub trait Scene {
     }
 
     /// Chooses a light with a number in [0, 1), which need not be asked for: to light the receiver `lit`, or, without one, to start
-    /// a light walk. Unless told otherwise, each light as often as the next.
+    /// a light walk. Unless told otherwise, each light as often as the next. Of the receiver, as for [`Light`], nothing counts but
+    /// position, geometric normal and place.
     fn pick_light(&self, lit: Option<&Point>, u: impl FnOnce() -> Real) -> Option<(Self::LightId, Chance)> {
         let lights = self.lights();
         let id = *lights.get((u() * lights.len() as Real) as usize)?;

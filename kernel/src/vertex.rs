@@ -60,23 +60,19 @@ impl<'s, S: Scene + 's> Vertex<'s, S> {
         self.lobes.intersects(lobes).then_some(wi)
     }
 
-    /// What the smooth lobes answered towards `toward`, the adjoint factor of the shading normal included;
-    /// `None` where nothing is scattered there.
+    /// What the smooth lobes answered towards `toward`, the adjoint factor of the shading normal included.
     #[inline(always)]
-    pub fn scattered(&self, toward: Vec3, mut scatter: Scatter) -> Option<Scatter> {
-        if scatter.value.is_black() {
-            return None;
-        }
+    pub fn scattered(&self, toward: Vec3, mut scatter: Scatter) -> Scatter {
         if self.carried == Carried::Importance {
             scatter.value = scatter.value * self.adjoint(toward);
         }
-        Some(scatter)
+        scatter
     }
 
     /// The smooth lobes towards `toward`.
     #[inline(always)]
     pub fn scatter(&self, toward: Vec3) -> Option<Scatter> {
-        self.scattered(toward, self.bsdf.eval(self.wo, self.local(toward)?, self.carried))
+        Some(self.scattered(toward, self.bsdf.eval(self.wo, self.local(toward)?, self.carried)))
     }
 
     /// The smooth lobes towards `toward`, if there is such a direction, and where the walk goes on.
@@ -84,7 +80,7 @@ impl<'s, S: Scene + 's> Vertex<'s, S> {
     pub fn scatter_and_bounce(&self, toward: Option<Vec3>, u: [Real; 3]) -> (Option<Scatter>, Option<Bounce>) {
         let Some((toward, wi)) = toward.and_then(|toward| Some((toward, self.local(toward)?))) else { return (None, self.bounce(u)) };
         let (scatter, sampled) = self.bsdf.eval_and_sample(self.wo, wi, u, self.carried);
-        (self.scattered(toward, scatter), sampled.and_then(|sampled| self.gone_on(sampled)))
+        (Some(self.scattered(toward, scatter)), sampled.and_then(|sampled| self.gone_on(sampled)))
     }
 
     /// Where the walk goes on.

@@ -346,10 +346,20 @@ macro_rules! of_extent {
 }
 
 impl LightExtent {
-    /// [`Extent::sample_toward`] of any but a rectangle: those are so common that they are asked in place.
+    /// [`Extent::sample_toward`] of any but a rectangle: those are so common that they are asked in place. So with the two below.
     #[inline(never)]
     fn sample_round_toward(&self, lit: &Point, u: [Real; 2]) -> Option<Toward> {
         of_extent!(self, shape => shape.sample_toward(lit, u))
+    }
+
+    #[inline(never)]
+    fn round_density(&self, at: &Point) -> PerArea {
+        of_extent!(self, shape => shape.density(at))
+    }
+
+    #[inline(never)]
+    fn round_density_toward(&self, at: &Point, lit: &Point) -> PerArea {
+        of_extent!(self, shape => shape.density_toward(at, lit))
     }
 }
 
@@ -359,21 +369,28 @@ impl Extent for &LightExtent {
         of_extent!(self, shape => shape.sample(u))
     }
 
-    #[inline]
+    #[inline(always)]
     fn density(&self, at: &Point) -> PerArea {
-        of_extent!(self, shape => shape.density(at))
+        match self {
+            LightExtent::Parallelogram(shape) => shape.density(at),
+            _ => self.round_density(&{ *at }),
+        }
     }
 
     #[inline(always)]
     fn sample_toward(&self, lit: &Point, u: [Real; 2]) -> Option<Toward> {
         match self {
             LightExtent::Parallelogram(shape) => shape.sample_toward(lit, u),
-            _ => self.sample_round_toward(lit, u),
+            // A copy, so that the receiver itself need not lie in memory.
+            _ => self.sample_round_toward(&{ *lit }, u),
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn density_toward(&self, at: &Point, lit: &Point) -> PerArea {
-        of_extent!(self, shape => shape.density_toward(at, lit))
+        match self {
+            LightExtent::Parallelogram(shape) => shape.density(at),
+            _ => self.round_density_toward(&{ *at }, &{ *lit }),
+        }
     }
 }

@@ -30,7 +30,7 @@ use camera::SceneCamera;
 use choice::Lights;
 use description::GroupId;
 use group::{Group, Owner};
-use shape::Shape;
+use shape::{Shape, in_parts};
 use surface::Finish;
 
 /// A scene ready to be rendered; its coordinates are the file's, moved to the scene's own centre.
@@ -112,7 +112,10 @@ impl Scene {
         let owner = self.owners[hit.primitive.0 as usize];
         match owner.triangle() {
             Some(triangle) => (self.shapes[owner.of as usize].point(&self.geometry.surface(ray, hit), triangle), owner.of),
-            None => self.met_in_instance(ray, hit, owner),
+            None => {
+                let (point, shape) = self.met_in_instance(ray, hit, owner);
+                (in_parts(&point), shape)
+            }
         }
     }
 

@@ -1,7 +1,7 @@
-//! Plain scenes: a perspective camera, diffuse surfaces of one colour each, and uniform light from rectangles, disks and balls.
+//! Plain scenes: a pinhole camera, diffuse surfaces of one colour each, and uniform light from rectangles, disks and balls.
 //! Each part is kept once more without the choice among all that it could have been.
 
-use bidir_kernel::{Bsdf, Carried, Lobe, Real, Scatter, Scattered, Spectrum, Vec3, camera::Perspective, light::AreaLight};
+use bidir_kernel::{Bsdf, Carried, Lobe, Real, Scatter, Scattered, Spectrum, Vec3, camera::Pinhole, light::AreaLight};
 use bidir_standard as standard;
 
 use crate::scene::{
@@ -16,7 +16,7 @@ use crate::scene::{
 /// The parts of a plain scene.
 #[derive(Clone, Debug)]
 pub struct Parts {
-    pub(super) camera: Perspective,
+    pub(super) camera: Pinhole,
     /// Of each of the scene's finishes.
     surfaces: Vec<Matt>,
     /// Of each of the scene's lights.
@@ -36,6 +36,9 @@ impl Parts {
     /// `None` if the scene is not plain.
     pub(super) fn of(camera: &SceneCamera, shapes: &[Shape], finishes: &[Finish], lights: &Lights) -> Option<Self> {
         let SceneCamera::Perspective(camera) = camera else { return None };
+        if camera.lens_radius > 0.0 {
+            return None;
+        }
         let matt: Vec<_> = finishes.iter().map(Finish::matt).collect();
         if shapes.iter().any(|shape| matt[shape.finish as usize].is_none()) {
             return None;
@@ -44,7 +47,7 @@ impl Parts {
         let unworn = Matt { shader: standard::Diffuse { reflectance: Spectrum::BLACK }, mirrored: false };
         let surfaces = matt.into_iter().map(|matt| matt.unwrap_or(unworn)).collect();
         let lights = lights.sources().iter().map(uniform).collect::<Option<_>>()?;
-        Some(Self { camera: *camera, surfaces, lights })
+        Some(Self { camera: Pinhole(*camera), surfaces, lights })
     }
 
     #[inline(always)]

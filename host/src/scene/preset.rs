@@ -76,7 +76,7 @@ impl<const LIGHT_WALKS: bool> Preset for Any<LIGHT_WALKS> {
 
 impl<'a, const LIGHT_WALKS: bool> Preset for Plain<'a, LIGHT_WALKS> {
     const EFFECTS: Effects = Effects { light_walks: LIGHT_WALKS, power_heuristic: LIGHT_WALKS, ..Effects::NONE };
-    type Camera = bidir_kernel::camera::Perspective;
+    type Camera = bidir_kernel::camera::Pinhole;
     type Bsdf<'v>
         = Matt
     where

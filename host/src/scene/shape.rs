@@ -80,6 +80,12 @@ impl Turn {
     }
 }
 
+/// The same point of a surface, put together from its parts: a call's answer lies in memory, parts need not.
+#[inline(always)]
+pub(super) fn in_parts(point: &Point) -> Point {
+    Point::surface(point.position, point.normal, point.frame, point.uv, point.offset)
+}
+
 /// With a largest entry of 1, times `sign`.
 fn scaled(matrix: &DMat3, sign: f64) -> Mat3 {
     let largest = matrix.to_cols_array().iter().fold(0.0, |a: f64, b| a.max(b.abs()));
@@ -120,7 +126,7 @@ impl Shape {
             Form::Parallelogram(tangent) => flat(normal, *tangent, Vec2::new(local.x, local.y)),
             Form::Mesh(mesh) => {
                 let whole = turn.map(|turn| mesh.turn.then(turn));
-                mesh.point(at, triangle, self, whole.as_ref().unwrap_or(&mesh.turn))
+                in_parts(&mesh.point(at, triangle, self, whole.as_ref().unwrap_or(&mesh.turn)))
             }
             _ if !self.mapped => flat(normal, Vec3::ZERO, Vec2::ZERO),
             Form::Disk(x, y) => {

@@ -301,7 +301,7 @@ impl Finish {
     /// What the surface may need of the kernel. Those that are not matt are not told apart.
     pub fn effects(&self) -> Effects {
         let other = self.matt().is_none();
-        Effects { deltas: other, lobe_choice: other, refraction: other, ..Effects::NONE }
+        Effects { deltas: other, lobe_choice: other, dear_surfaces: other, refraction: other, ..Effects::NONE }
     }
 
     /// Every lobe the surface has at uv (0, 0), for what `explain` says of it.

@@ -11,6 +11,7 @@ use crate::{
         Scene,
         lights::LightId,
         preset::{Full, Preset},
+        shape::Shape,
     },
 };
 
@@ -68,13 +69,13 @@ impl<'a, P: Preset> View<'a, P> {
 
 /// A ray's end: the shape it met.
 #[derive(Clone, Copy, Debug)]
-pub struct Hit {
-    shape: u32,
+pub struct Hit<'a> {
+    shape: &'a Shape,
 }
 
-impl<P: Preset> bidir_kernel::Scene for View<'_, P> {
+impl<'s, P: Preset> bidir_kernel::Scene for View<'s, P> {
     const EFFECTS: Effects = P::EFFECTS;
-    type Hit = Hit;
+    type Hit = Hit<'s>;
     type LightId = LightId;
     type Camera = P::Camera;
     type Bsdf<'a>
@@ -92,11 +93,11 @@ impl<P: Preset> bidir_kernel::Scene for View<'_, P> {
     }
 
     #[inline(always)]
-    fn intersect(&self, ray: &Ray) -> Option<(Point, Hit)> {
+    fn intersect(&self, ray: &Ray) -> Option<(Point, Hit<'s>)> {
         self.closest.set(self.closest.get() + 1);
         let hit = self.scene.geometry.closest(ray)?;
         let (point, shape) = self.scene.met(ray, &hit);
-        Some((point, Hit { shape }))
+        Some((point, Hit { shape: &self.scene.shapes[shape as usize] }))
     }
 
     #[inline(always)]
@@ -106,8 +107,8 @@ impl<P: Preset> bidir_kernel::Scene for View<'_, P> {
     }
 
     #[inline(always)]
-    fn bsdf(&self, point: &Point, hit: Hit) -> P::Bsdf<'_> {
-        self.preset.bsdf(self.scene, &self.sandbox, self.scene.shapes[hit.shape as usize].finish, point.uv)
+    fn bsdf(&self, point: &Point, hit: Hit<'s>) -> P::Bsdf<'_> {
+        self.preset.bsdf(self.scene, &self.sandbox, hit.shape.finish, point.uv)
     }
 
     #[inline(always)]
@@ -116,8 +117,8 @@ impl<P: Preset> bidir_kernel::Scene for View<'_, P> {
     }
 
     #[inline(always)]
-    fn light_id_at(&self, hit: Hit) -> Option<LightId> {
-        self.scene.shapes[hit.shape as usize].light
+    fn light_id_at(&self, hit: Hit<'s>) -> Option<LightId> {
+        hit.shape.light
     }
 
     #[inline(always)]
@@ -127,12 +128,16 @@ impl<P: Preset> bidir_kernel::Scene for View<'_, P> {
 
     #[inline(always)]
     fn pick_light(&self, lit: Option<&Point>, u: impl FnOnce() -> Real) -> Option<(LightId, Chance)> {
-        self.scene.lights.only(lit).or_else(|| self.scene.lights.pick(lit, u(), &self.sandbox))
+        // A copy, so that the receiver itself need not lie in memory.
+        self.scene.lights.only(lit).or_else(|| self.scene.lights.pick(lit.copied().as_ref(), u(), &self.sandbox))
     }
 
     #[inline(always)]
     fn light_chance(&self, id: LightId, lit: Option<&Point>) -> Chance {
-        self.scene.lights.chance(id, lit, &self.sandbox)
+        match self.scene.lights.only(lit) {
+            Some((_, chance)) => chance,
+            None => self.scene.lights.chance(id, lit.copied().as_ref(), &self.sandbox),
+        }
     }
 
     #[inline(always)]

@@ -96,7 +96,7 @@ impl Lights {
     }
 
     /// What [`Lights::pick`] answers a receiver that is not infinitely far away where there is but one light: whatever the number is.
-    #[inline]
+    #[inline(always)]
     pub fn only(&self, lit: Option<&Point>) -> Option<(LightId, Chance)> {
         let near = lit.is_some_and(|lit| lit.place != Place::Distant);
         (near && self.sources.len() == 1 && matches!(self.next_event, NextEvent::Each)).then_some((LightId(0), Chance(1.0)))
