@@ -75,7 +75,8 @@ impl<'s, S: Scene, P: Sampler, F: Film> CameraWalk<'_, 's, S, P, F> {
         let lens_hit = if seen.end.can_be_hit() { techniques.lens_hit } else { 0.0 };
         let mut side = Side::start(heuristic, f64::from(seen.end.value()), Join::LensHit, lens_hit);
         let mut throughput = seen.weight;
-        let mut way = (f64::from(seen.spread.value()), 0.0, false);
+        // Without light walks, nothing else makes what the lens sees directly, and nobody asks how densely it was made.
+        let mut way = (if S::EFFECTS.light_walks { f64::from(seen.spread.value()) } else { 1.0 }, 0.0, false);
         let mut eta_scale: Real = 1.0;
         let mut stored = 0;
         let mut length = 1;

@@ -71,3 +71,25 @@ pub trait Light {
     /// How densely [`Light::illuminate`] makes `at` for the receiver `lit`, in the measure of [`Exit::end`].
     fn next_event_density(&self, at: &Point, lit: &Point) -> EndDensity;
 }
+
+impl<L: Light> Light for &L {
+    #[inline(always)]
+    fn emit(&self, u: [Real; 4]) -> Option<Emission> {
+        (**self).emit(u)
+    }
+
+    #[inline(always)]
+    fn illuminate(&self, lit: &Point, u: [Real; 2]) -> Option<Illumination> {
+        (**self).illuminate(lit, u)
+    }
+
+    #[inline(always)]
+    fn emitted(&self, at: &Point, toward: Vec3) -> Exit {
+        (**self).emitted(at, toward)
+    }
+
+    #[inline(always)]
+    fn next_event_density(&self, at: &Point, lit: &Point) -> EndDensity {
+        (**self).next_event_density(at, lit)
+    }
+}

@@ -345,52 +345,24 @@ macro_rules! of_extent {
     };
 }
 
-impl LightExtent {
-    /// [`Extent::sample_toward`] of any but a rectangle: those are so common that they are asked in place. So with the two below.
-    #[inline(never)]
-    fn sample_round_toward(&self, lit: &Point, u: [Real; 2]) -> Option<Toward> {
-        of_extent!(self, shape => shape.sample_toward(lit, u))
-    }
-
-    #[inline(never)]
-    fn round_density(&self, at: &Point) -> PerArea {
-        of_extent!(self, shape => shape.density(at))
-    }
-
-    #[inline(never)]
-    fn round_density_toward(&self, at: &Point, lit: &Point) -> PerArea {
-        of_extent!(self, shape => shape.density_toward(at, lit))
-    }
-}
-
 impl Extent for &LightExtent {
     #[inline]
     fn sample(&self, u: [Real; 2]) -> (Point, PerArea) {
         of_extent!(self, shape => shape.sample(u))
     }
 
-    #[inline(always)]
+    #[inline]
     fn density(&self, at: &Point) -> PerArea {
-        match self {
-            LightExtent::Parallelogram(shape) => shape.density(at),
-            _ => self.round_density(&{ *at }),
-        }
+        of_extent!(self, shape => shape.density(at))
     }
 
-    #[inline(always)]
+    #[inline]
     fn sample_toward(&self, lit: &Point, u: [Real; 2]) -> Option<Toward> {
-        match self {
-            LightExtent::Parallelogram(shape) => shape.sample_toward(lit, u),
-            // A copy, so that the receiver itself need not lie in memory.
-            _ => self.sample_round_toward(&{ *lit }, u),
-        }
+        of_extent!(self, shape => shape.sample_toward(lit, u))
     }
 
-    #[inline(always)]
+    #[inline]
     fn density_toward(&self, at: &Point, lit: &Point) -> PerArea {
-        match self {
-            LightExtent::Parallelogram(shape) => shape.density(at),
-            _ => self.round_density_toward(&{ *at }, &{ *lit }),
-        }
+        of_extent!(self, shape => shape.density_toward(at, lit))
     }
 }

@@ -1,4 +1,4 @@
-//! Plain scenes: a pinhole camera, diffuse surfaces of one colour each, and uniform light from rectangles, disks and balls.
+//! Plain scenes: a pinhole camera, diffuse surfaces of one colour each, and uniform light from rectangles.
 //! Each part is kept once more without the choice among all that it could have been.
 
 use bidir_kernel::{Bsdf, Carried, Lobe, Real, Scatter, Scattered, Spectrum, Vec3, camera::Pinhole, light::AreaLight};
@@ -7,7 +7,7 @@ use bidir_standard as standard;
 use crate::scene::{
     camera::SceneCamera,
     choice::Lights,
-    extent::LightExtent,
+    extent::{LightExtent, Parallelogram},
     lights::{LightId, LightSource, ProfileSource, Seat},
     shape::Shape,
     surface::Finish,
@@ -20,8 +20,11 @@ pub struct Parts {
     /// Of each of the scene's finishes.
     surfaces: Vec<Matt>,
     /// Of each of the scene's lights.
-    lights: Vec<(LightExtent, standard::Area)>,
+    lights: Vec<Lamp>,
 }
+
+/// A rectangle that shines alike all over.
+pub type Lamp = AreaLight<Parallelogram, standard::Area>;
 
 /// A diffuse surface of one colour, on its normal's side or on both.
 #[derive(Clone, Copy, Debug)]
@@ -46,7 +49,7 @@ impl Parts {
         // What no shape wears, no path meets.
         let unworn = Matt { shader: standard::Diffuse { reflectance: Spectrum::BLACK }, mirrored: false };
         let surfaces = matt.into_iter().map(|matt| matt.unwrap_or(unworn)).collect();
-        let lights = lights.sources().iter().map(uniform).collect::<Option<_>>()?;
+        let lights = lights.sources().iter().map(lamp).collect::<Option<_>>()?;
         Some(Self { camera: Pinhole(*camera), surfaces, lights })
     }
 
@@ -56,19 +59,16 @@ impl Parts {
     }
 
     #[inline(always)]
-    pub(super) fn light(&self, id: LightId) -> AreaLight<&LightExtent, standard::Area> {
-        let (extent, profile) = &self.lights[id.0 as usize];
-        AreaLight { extent, profile: *profile }
+    pub(super) fn light(&self, id: LightId) -> &Lamp {
+        &self.lights[id.0 as usize]
     }
 }
 
-/// A rectangle, disk or ball that shines alike all over.
-fn uniform(source: &LightSource) -> Option<(LightExtent, standard::Area)> {
+fn lamp(source: &LightSource) -> Option<Lamp> {
     match (&source.seat, &source.profile) {
-        (Seat::Shape(extent), ProfileSource::Area(profile)) => match extent {
-            LightExtent::Parallelogram(_) | LightExtent::Ellipse(_) | LightExtent::Ball(_) => Some((extent.clone(), *profile)),
-            LightExtent::Tube(_) | LightExtent::Surface(_) => None,
-        },
+        (Seat::Shape(LightExtent::Parallelogram(extent)), ProfileSource::Area(profile)) => {
+            Some(AreaLight { extent: *extent, profile: *profile })
+        }
         _ => None,
     }
 }

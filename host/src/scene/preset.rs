@@ -1,17 +1,15 @@
 //! Presets: what a render is compiled for. There are few, and a scene is rendered with the smallest that covers it; any that covers
 //! it gives the same image, bit for bit.
 
-use bidir_kernel::{Bsdf, Camera, Effects, Light, Vec2, light::AreaLight};
-use bidir_standard as standard;
+use bidir_kernel::{Bsdf, Camera, Effects, Light, Vec2};
 
 use crate::{
     plugin::Sandbox,
     scene::{
         Scene,
         camera::SceneCamera,
-        extent::LightExtent,
         lights::{LightId, SceneLight},
-        plain::{Matt, Parts},
+        plain::{Lamp, Matt, Parts},
         surface::Surface,
     },
 };
@@ -82,7 +80,7 @@ impl<'a, const LIGHT_WALKS: bool> Preset for Plain<'a, LIGHT_WALKS> {
     where
         Self: 'v;
     type Light<'v>
-        = AreaLight<&'v LightExtent, standard::Area>
+        = &'v Lamp
     where
         Self: 'v;
 
