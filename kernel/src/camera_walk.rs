@@ -73,7 +73,8 @@ impl<'s, S: Scene, P: Sampler, F: Film> CameraWalk<'_, 's, S, P, F> {
         let origin = if S::EFFECTS.clipping { previous.position + direction * near } else { previous.position };
         let mut ray = Ray { origin, direction, t_max: far - near, segment: Segment::Lens };
         let lens_hit = if seen.end.can_be_hit() { techniques.lens_hit } else { 0.0 };
-        let mut side = Side::start(heuristic, f64::from(seen.end.value()), Join::LensHit, lens_hit);
+        let end = if S::EFFECTS.light_walks { f64::from(seen.end.value()) } else { 1.0 };
+        let mut side = Side::start(heuristic, end, Join::LensHit, lens_hit);
         let mut throughput = seen.weight;
         // Without light walks, nothing else makes what the lens sees directly, and nobody asks how densely it was made.
         let mut way = (if S::EFFECTS.light_walks { f64::from(seen.spread.value()) } else { 1.0 }, 0.0, false);
@@ -89,7 +90,10 @@ impl<'s, S: Scene, P: Sampler, F: Film> CameraWalk<'_, 's, S, P, F> {
                     && !(length == 1 && hides_emitters)
                 {
                     let at = Point::distant(previous.position, -direction);
-                    let side = Self::arrived(&side, heuristic, &step(&previous, &at, direction, way, instead));
+                    if S::EFFECTS.light_walks {
+                        side = side.advance(heuristic, &step(&previous, &at, direction, way, instead));
+                    }
+                    let side = Self::arrived(side, heuristic, || step(&previous, &at, direction, way, instead));
                     // A lens that sees only so far is never shown what is infinitely far.
                     let clipped = length == 1 && far < Real::INFINITY;
                     let joined = length <= self.joined_length && !clipped;
@@ -97,12 +101,11 @@ impl<'s, S: Scene, P: Sampler, F: Film> CameraWalk<'_, 's, S, P, F> {
                 }
                 return stored;
             };
-            let arrived = || Self::arrived(&side, heuristic, &step(&previous, &point, direction, way, instead));
-            let light = scene.light_id_at(hit);
-            if S::EFFECTS.light_walks || light.is_some() {
-                side = arrived();
+            if S::EFFECTS.light_walks {
+                side = side.advance(heuristic, &step(&previous, &point, direction, way, instead));
             }
-            if let Some(id) = light {
+            if let Some(id) = scene.light_id_at(hit) {
+                let side = Self::arrived(side, heuristic, || step(&previous, &point, direction, way, instead));
                 let joined = length <= self.joined_length;
                 self.light_hit(id, &point, &previous, direction, way.2, &End { side: &side, throughput, length, joined });
             }
@@ -152,11 +155,11 @@ impl<'s, S: Scene, P: Sampler, F: Film> CameraWalk<'_, 's, S, P, F> {
         self.sampler.next_pair()
     }
 
-    /// What the vertex that this step leads to knows of the other techniques. Without light walks that is the step alone, and is asked
-    /// for only where a light was hit.
+    /// What a light that was hit is told of the other techniques: what the walk has kept; without light walks the last step alone
+    /// counts, and is asked for only then.
     #[inline(always)]
-    fn arrived(side: &Side<F::Rivals>, heuristic: Heuristic, step: &Step) -> Side<F::Rivals> {
-        if S::EFFECTS.light_walks { side.advance(heuristic, step) } else { Side::alone(heuristic, step) }
+    fn arrived(kept: Side<F::Rivals>, heuristic: Heuristic, step: impl FnOnce() -> Step) -> Side<F::Rivals> {
+        if S::EFFECTS.light_walks { kept } else { Side::alone(heuristic, &step()) }
     }
 
     /// s = 0: the walk landed on the light `id` at `at`, coming from `previous`.
@@ -202,11 +205,16 @@ impl<'s, S: Scene, P: Sampler, F: Film> CameraWalk<'_, 's, S, P, F> {
         let count = if vertex.joins() { self.strategy.techniques.next_event as u32 } else { 0 };
         // The last light is asked for together with where the walk goes on.
         let alone = if S::EFFECTS.dear_surfaces { count.saturating_sub(1) } else { count };
-        for turn in 0..alone {
+        let mut turn = 0;
+        while turn < alone {
             if let Some(lit) = self.picked(&vertex.point, dimension, turn)
                 && let Some(scatter) = vertex.scatter(lit.sampled.direction)
             {
                 self.next_event(vertex, end, &lit, &scatter);
+            }
+            turn += 1;
+            if !S::EFFECTS.several_next_events {
+                break;
             }
         }
         let lit = if alone < count { self.picked(&vertex.point, dimension, alone) } else { None };
@@ -237,7 +245,7 @@ impl<'s, S: Scene, P: Sampler, F: Film> CameraWalk<'_, 's, S, P, F> {
     fn next_event(&mut self, vertex: &Vertex<'s, S>, end: &End<F::Rivals>, lit: &Lit<S::LightId>, scatter: &Scatter) {
         let Strategy { techniques, heuristic, .. } = *self.strategy;
         let (Lit { id, chance, sampled }, point) = (lit, &vertex.point);
-        let per_sample = techniques.next_event as Real * chance.0;
+        let per_sample = if S::EFFECTS.several_next_events { techniques.next_event as Real } else { 1.0 } * chance.0;
         let value = end.throughput * scatter.value * sampled.weight / per_sample;
         if value.is_black() || !self.scene.unoccluded(point, &sampled.point, Segment::Inner) {
             return;

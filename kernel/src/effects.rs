@@ -8,6 +8,8 @@ use core::ops::BitOr;
 pub struct Effects {
     /// Walks from lights: connections, lens splats and lens hits. Where they are left out, a strategy's are switched off.
     pub light_walks: bool,
+    /// More than one next event at a vertex. Where it is left out, a strategy has one or none.
+    pub several_next_events: bool,
     /// Weights by another heuristic than the balance heuristic. Where it is left out, a strategy's is the balance heuristic.
     pub power_heuristic: bool,
     /// Light from infinitely far away all around: rays that escape land on it.
@@ -34,6 +36,7 @@ impl Effects {
     /// Whatever may be.
     pub const ALL: Self = Self {
         light_walks: true,
+        several_next_events: true,
         power_heuristic: true,
         environment: true,
         deltas: true,
@@ -49,6 +52,7 @@ impl Effects {
     /// Paths from the camera between surfaces of one lobe, lit by lights that have a place.
     pub const NONE: Self = Self {
         light_walks: false,
+        several_next_events: false,
         power_heuristic: false,
         environment: false,
         deltas: false,
@@ -73,11 +77,12 @@ impl Effects {
         covered
     }
 
-    const fn each(self) -> [bool; 11] {
-        let Self { light_walks, power_heuristic, environment, deltas, lobe_choice, .. } = self;
+    const fn each(self) -> [bool; 12] {
+        let Self { light_walks, several_next_events, power_heuristic, environment, deltas, lobe_choice, .. } = self;
         let Self { dear_surfaces, refraction, shading_normals, finite_lens, clipping, hidden_emitters, .. } = self;
         [
             light_walks,
+            several_next_events,
             power_heuristic,
             environment,
             deltas,
@@ -98,6 +103,7 @@ impl BitOr for Effects {
     fn bitor(self, other: Self) -> Self {
         Self {
             light_walks: self.light_walks | other.light_walks,
+            several_next_events: self.several_next_events | other.several_next_events,
             power_heuristic: self.power_heuristic | other.power_heuristic,
             environment: self.environment | other.environment,
             deltas: self.deltas | other.deltas,

@@ -31,12 +31,20 @@ impl Strategy {
         if !effects.light_walks {
             techniques = Techniques { connection: 0.0, lens_splat: 0.0, lens_hit: 0.0, ..techniques };
         }
+        if !effects.several_next_events {
+            techniques.next_event = if techniques.uses(Join::NextEvent) { 1.0 } else { 0.0 };
+        }
         Self { techniques, heuristic: if effects.power_heuristic { heuristic } else { Heuristic::Balance }, max_depth, rr_depth }
     }
 
     /// What these techniques and their heuristic need of the kernel.
     pub const fn effects(&self) -> Effects {
-        Effects { light_walks: self.techniques.light_walk(), power_heuristic: matches!(self.heuristic, Heuristic::Power), ..Effects::NONE }
+        Effects {
+            light_walks: self.techniques.light_walk(),
+            several_next_events: self.techniques.next_event > 1.0,
+            power_heuristic: matches!(self.heuristic, Heuristic::Power),
+            ..Effects::NONE
+        }
     }
 
     /// The longest path that every technique may make when `stored` light vertices can be kept: a connection can only reach

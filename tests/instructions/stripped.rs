@@ -49,7 +49,8 @@ impl<'a> Stripped<'a> {
         let [light] = scene.all_lights().sources() else { return None };
         let Seat::Shape(LightExtent::Parallelogram(rectangle)) = &light.seat else { return None };
         let ProfileSource::Area(profile) = &light.profile else { return None };
-        let seen = |shape| Some((scene.finish_of(shape).matt().filter(|matt| !matt.mirrored)?.shader.reflectance, shape.light.is_some()));
+        let seen =
+            |shape| Some((scene.finish_of(shape).matt().filter(|matt| matt.behind > 0.0)?.shader.reflectance, shape.light.is_some()));
         let integrator = &description.integrator;
         Some(Self {
             scene,

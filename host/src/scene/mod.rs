@@ -107,16 +107,25 @@ impl Scene {
     }
 
     /// The point of a hit that [`Self::geometry`] gave for this ray, and the number of its shape.
-    #[inline(always)]
+    #[inline]
     pub fn met(&self, ray: &Ray, hit: &RayHit) -> (Point, u32) {
         let owner = self.owners[hit.primitive.0 as usize];
         match owner.triangle() {
             Some(triangle) => (self.shapes[owner.of as usize].point(&self.geometry.surface(ray, hit), triangle), owner.of),
-            None => {
-                let (point, shape) = self.met_in_instance(ray, hit, owner);
-                (in_parts(&point), shape)
-            }
+            None => self.met_in_instance(ray, hit, owner),
         }
+    }
+
+    /// The same with the shape itself.
+    #[inline(always)]
+    fn met_shape(&self, ray: &Ray, hit: &RayHit) -> (Point, &Shape) {
+        let owner = self.owners[hit.primitive.0 as usize];
+        let Some(triangle) = owner.triangle() else {
+            let (point, shape) = self.met_in_instance(ray, hit, owner);
+            return (in_parts(&point), &self.shapes[shape as usize]);
+        };
+        let shape = &self.shapes[owner.of as usize];
+        (shape.point(&self.geometry.surface(ray, hit), triangle), shape)
     }
 
     #[inline(never)]

@@ -31,8 +31,8 @@ pub type Lamp = AreaLight<Parallelogram, standard::Area>;
 pub struct Matt {
     /// Where the normal points.
     pub shader: standard::Diffuse,
-    /// Whether it is the same behind, as if its normal pointed there.
-    pub mirrored: bool,
+    /// −1 if it is the same behind, as if its normal pointed there; 1 if it is black there.
+    pub behind: Real,
 }
 
 impl Parts {
@@ -47,7 +47,7 @@ impl Parts {
             return None;
         }
         // What no shape wears, no path meets.
-        let unworn = Matt { shader: standard::Diffuse { reflectance: Spectrum::BLACK }, mirrored: false };
+        let unworn = Matt { shader: standard::Diffuse { reflectance: Spectrum::BLACK }, behind: 1.0 };
         let surfaces = matt.into_iter().map(|matt| matt.unwrap_or(unworn)).collect();
         let lights = lights.sources().iter().map(lamp).collect::<Option<_>>()?;
         Some(Self { camera: Pinhole(*camera), surfaces, lights })
@@ -77,7 +77,7 @@ impl Matt {
     /// −1 where z is to be turned round.
     #[inline(always)]
     fn turn(&self, wo: Vec3) -> Real {
-        if self.mirrored && !(wo.z >= 0.0) { -1.0 } else { 1.0 }
+        if wo.z >= 0.0 { 1.0 } else { self.behind }
     }
 }
 

@@ -287,13 +287,13 @@ impl Finish {
 
     /// The finish as a diffuse surface of one colour, if it is one.
     pub fn matt(&self) -> Option<Matt> {
-        let mirrored = match self.behind {
-            Behind::Itself => false,
-            Behind::Mirrored => true,
+        let behind = match self.behind {
+            Behind::Itself => 1.0,
+            Behind::Mirrored => -1.0,
             Behind::Other(_) => return None,
         };
         match self.front.shader {
-            Ready::Fixed(Shader::Diffuse(shader)) => Some(Matt { shader, mirrored }),
+            Ready::Fixed(Shader::Diffuse(shader)) => Some(Matt { shader, behind }),
             _ => None,
         }
     }

@@ -96,8 +96,8 @@ impl<'s, P: Preset> bidir_kernel::Scene for View<'s, P> {
     fn intersect(&self, ray: &Ray) -> Option<(Point, Hit<'s>)> {
         self.closest.set(self.closest.get() + 1);
         let hit = self.scene.geometry.closest(ray)?;
-        let (point, shape) = self.scene.met(ray, &hit);
-        Some((point, Hit { shape: &self.scene.shapes[shape as usize] }))
+        let (point, shape) = self.scene.met_shape(ray, &hit);
+        Some((point, Hit { shape }))
     }
 
     #[inline(always)]
