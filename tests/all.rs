@@ -14,6 +14,7 @@ mod hostile;
 mod house;
 mod instances;
 mod invariance;
+mod presets;
 #[path = "../host/src/rays/tests/generator.rs"]
 mod random;
 mod references;
