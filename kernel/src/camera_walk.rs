@@ -48,6 +48,7 @@ struct Lit<I> {
 }
 
 /// Traces one camera walk and joins each of its vertices to the lights; returns how many it left in `store`.
+#[inline(always)]
 pub(crate) fn camera_walk<'s, S: Scene, F: Film>(
     scene: &'s S,
     strategy: &Strategy,

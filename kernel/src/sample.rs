@@ -19,6 +19,7 @@ use crate::{
 ///
 /// `camera_path` and `light_path` are the caller's storage: how long they are caps how many vertices of a walk can be connected.
 /// The sampler's first two camera dimensions are the caller's, for `raster`.
+#[inline(always)]
 pub fn sample<'s, S: Scene, F: Film>(
     scene: &'s S,
     strategy: &Strategy,
