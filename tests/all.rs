@@ -15,6 +15,7 @@ mod house;
 mod instances;
 mod invariance;
 mod plans;
+mod presets;
 #[path = "../host/src/rays/tests/generator.rs"]
 mod random;
 mod references;

@@ -6,7 +6,7 @@ mod perspective;
 
 pub use film_plane::FilmPlane;
 pub use orthographic::Orthographic;
-pub use perspective::Perspective;
+pub use perspective::{Perspective, Pinhole};
 
 use crate::{
     density::{EndDensity, Spread},

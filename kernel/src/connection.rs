@@ -110,7 +110,7 @@ fn paired<'s, S: Scene, R>(
 }
 
 #[inline]
-fn pair<B: Bsdf>(near: &Vertex<B>, far: &Vertex<B>) -> Option<Pair> {
+fn pair<S: Scene>(near: &Vertex<'_, S>, far: &Vertex<'_, S>) -> Option<Pair> {
     let (direction, squared_distance) = near.point.direction_to(&far.point)?;
     let local = [near.local(direction)?, far.local(-direction)?];
     Some(Pair { directions: [direction, -direction], squared_distance, local, scatters: [Scatter::NONE; 2] })
@@ -118,7 +118,7 @@ fn pair<B: Bsdf>(near: &Vertex<B>, far: &Vertex<B>) -> Option<Pair> {
 
 /// Asks a vertex about its pairs, which lie in the block at `place`, and drops those between which it scatters nothing.
 #[inline]
-fn ask<B: Bsdf>(vertex: &Vertex<B>, end: usize, block: &mut Block, place: impl Fn(usize) -> (usize, usize)) {
+fn ask<S: Scene>(vertex: &Vertex<'_, S>, end: usize, block: &mut Block, place: impl Fn(usize) -> (usize, usize)) {
     let (mut wi, mut scatters, mut count) = ([Vec3::ZERO; BATCH], [Scatter::NONE; BATCH], 0);
     for (row, column) in (0..BATCH).map(&place) {
         if let Some(pair) = &block[row][column] {
@@ -134,9 +134,9 @@ fn ask<B: Bsdf>(vertex: &Vertex<B>, end: usize, block: &mut Block, place: impl F
     for (row, column) in (0..BATCH).map(place) {
         let slot = &mut block[row][column];
         if let Some(pair) = slot {
-            match scatters.next().and_then(|scatter| vertex.scattered(pair.directions[end], scatter)) {
-                Some(scatter) => pair.scatters[end] = scatter,
-                None => *slot = None,
+            match scatters.next().map(|scatter| vertex.scattered(pair.directions[end], scatter)) {
+                Some(scatter) if !scatter.value.is_black() => pair.scatters[end] = scatter,
+                _ => *slot = None,
             }
         }
     }

@@ -55,6 +55,8 @@ pub struct Illumination {
 }
 
 /// A light. Its choice among all lights is the scene's and in none of these densities.
+///
+/// Of a receiver `lit`, nothing counts but position, geometric normal and place.
 pub trait Light {
     /// Starts a light walk with four numbers in [0, 1); `None` where nothing leaves.
     fn emit(&self, u: [Real; 4]) -> Option<Emission>;
@@ -68,4 +70,26 @@ pub trait Light {
 
     /// How densely [`Light::illuminate`] makes `at` for the receiver `lit`, in the measure of [`Exit::end`].
     fn next_event_density(&self, at: &Point, lit: &Point) -> EndDensity;
+}
+
+impl<L: Light> Light for &L {
+    #[inline(always)]
+    fn emit(&self, u: [Real; 4]) -> Option<Emission> {
+        (**self).emit(u)
+    }
+
+    #[inline(always)]
+    fn illuminate(&self, lit: &Point, u: [Real; 2]) -> Option<Illumination> {
+        (**self).illuminate(lit, u)
+    }
+
+    #[inline(always)]
+    fn emitted(&self, at: &Point, toward: Vec3) -> Exit {
+        (**self).emitted(at, toward)
+    }
+
+    #[inline(always)]
+    fn next_event_density(&self, at: &Point, lit: &Point) -> EndDensity {
+        (**self).next_event_density(at, lit)
+    }
 }

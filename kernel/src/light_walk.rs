@@ -1,7 +1,7 @@
 //! From a light: emission, lens splats (t = 1), lens hits (t = 0), and the vertices that the camera walk connects to.
 
 use crate::{
-    bsdf::{Bsdf, Carried, Scatter},
+    bsdf::{Carried, Scatter},
     camera::{Camera, Seen},
     density::{Spread, conversions},
     film::{Contribution, Film},
@@ -15,7 +15,7 @@ use crate::{
     spectrum::Spectrum,
     strategy::Strategy,
     technique::{Join, Technique},
-    vertex::{Bounce, Vertex, Way, step},
+    vertex::{Bounce, Vertex, Way, bsdf_numbers, step},
     walk::WalkVertex,
     weight::{Rivals, Side, share},
 };
@@ -56,9 +56,10 @@ impl<'s, S: Scene, P: Sampler, F: Film> LightWalk<'_, 's, S, P, F> {
     fn run(&mut self, store: &mut [Option<WalkVertex<'s, S, F::Rivals>>]) -> usize {
         let Strategy { techniques, heuristic, .. } = *self.strategy;
         let scene = self.scene;
+        let hides_emitters = S::EFFECTS.hidden_emitters && scene.hides_emitters();
         self.seek(start::LIGHT);
         let [x, y] = self.sampler.next_pair();
-        let Some((id, chance)) = scene.pick_light(None, self.sampler.next()) else { return 0 };
+        let Some((id, chance)) = scene.pick_light(None, || self.sampler.next()) else { return 0 };
         let light = scene.light(id);
         self.seek(start::DIRECTION);
         let [u, v] = self.sampler.next_pair();
@@ -70,7 +71,7 @@ impl<'s, S: Scene, P: Sampler, F: Film> LightWalk<'_, 's, S, P, F> {
             return 0;
         }
         // Whether the lens may see the walk's newest vertex.
-        let mut seen = exit.end.can_be_hit() && !scene.hides_emitters();
+        let mut seen = exit.end.can_be_hit() && !hides_emitters;
         if seen && techniques.uses(Join::LensSplat) && self.joined_length >= 1 {
             self.splat_light(&light, &previous, chance.0);
         }
@@ -102,7 +103,7 @@ impl<'s, S: Scene, P: Sampler, F: Film> LightWalk<'_, 's, S, P, F> {
             side = side.advance(heuristic, &step(&previous, &point, direction, way, instead));
             let Some(here) = Vertex::new(point, scene.bsdf(&point, hit), -direction, Carried::Importance) else { return stored };
             let dimension = length.wrapping_mul(DIMENSIONS_PER_VERTEX);
-            seen = !(scene.hides_emitters() && scene.light_id_at(hit).is_some());
+            seen = !(hides_emitters && scene.light_id_at(hit).is_some());
             let bounce = self.splat_and_bounced(&here, length, &side, throughput, seen);
             if here.joins()
                 && techniques.uses(Join::Connection)
@@ -157,9 +158,9 @@ impl<'s, S: Scene, P: Sampler, F: Film> LightWalk<'_, 's, S, P, F> {
     }
 
     /// t = 1, a vertex of the walk shown to the lens, and where the walk goes on; both are asked for at once.
-    fn splat_and_bounced<B: Bsdf>(
+    fn splat_and_bounced(
         &mut self,
-        vertex: &Vertex<B>,
+        vertex: &Vertex<'s, S>,
         length: u32,
         side: &Side<F::Rivals>,
         throughput: Spectrum,
@@ -173,7 +174,7 @@ impl<'s, S: Scene, P: Sampler, F: Film> LightWalk<'_, 's, S, P, F> {
             None
         };
         self.seek(dimension + vertex::BSDF);
-        let u = [self.sampler.next(), self.sampler.next(), self.sampler.next()];
+        let u = bsdf_numbers::<S>(self.sampler);
         let (scatter, bounce) = vertex.scatter_and_bounce(seen.as_ref().map(|seen| -seen.direction), u);
         if let (Some(seen), Some(scatter)) = (&seen, &scatter) {
             self.splat(&vertex.point, length, side, throughput, seen, scatter);
@@ -184,7 +185,7 @@ impl<'s, S: Scene, P: Sampler, F: Film> LightWalk<'_, 's, S, P, F> {
     /// t = 1: a vertex of the walk, shown to the lens.
     fn splat(&mut self, point: &Point, length: u32, side: &Side<F::Rivals>, throughput: Spectrum, seen: &Seen, scatter: &Scatter) {
         let Strategy { techniques, heuristic, .. } = *self.strategy;
-        if !self.lens_sees(seen, point) {
+        if scatter.value.is_black() || !self.lens_sees(seen, point) {
             return;
         }
         let spread = f64::from(seen.spread.value());

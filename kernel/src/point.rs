@@ -54,6 +54,13 @@ impl Point {
         Self { position, normal: inward, frame: Frame::from_z(inward), uv: Vec2::ZERO, offset: Real::INFINITY, place: Place::Distant }
     }
 
+    /// As much of it as a light may ask of a receiver: position, geometric normal and place.
+    #[inline(always)]
+    pub(crate) fn as_receiver(&self) -> Self {
+        let frame = Frame { x: Vec3::ZERO, y: Vec3::ZERO, z: self.normal };
+        Self { position: self.position, normal: self.normal, frame, uv: Vec2::ZERO, offset: 0.0, place: self.place }
+    }
+
     /// Whether directions at this point are measured against a surface.
     #[inline(always)]
     pub fn is_surface(&self) -> bool {
@@ -62,7 +69,7 @@ impl Point {
 
     /// The unit direction from here towards `other`, and the square of the distance (1 if either is infinitely far away);
     /// `None` where the two coincide.
-    #[inline]
+    #[inline(always)]
     pub fn direction_to(&self, other: &Point) -> Option<(Vec3, Real)> {
         if other.place == Place::Distant {
             return Some((-other.normal, 1.0));
@@ -83,7 +90,7 @@ impl Point {
     }
 
     /// Where a ray that leaves along `direction` starts: moved off the surface, to the side it leaves on.
-    #[inline]
+    #[inline(always)]
     pub fn leave(&self, direction: Vec3) -> Vec3 {
         if !self.is_surface() {
             return self.position;
@@ -117,17 +124,15 @@ pub struct Ray {
 
 impl Ray {
     /// The ray that leaves `from` along `direction`, without an end.
-    #[inline]
+    #[inline(always)]
     pub fn leaving(from: &Point, direction: Vec3, segment: Segment) -> Self {
         Self { origin: from.leave(direction), direction, t_max: Real::INFINITY, segment }
     }
 
     /// The segment between two points, both ends moved off their surfaces; t runs from 0 to 1 unless one of them is infinitely far away.
-    #[inline]
+    #[inline(always)]
     pub fn between(a: &Point, b: &Point, segment: Segment) -> Self {
-        if a.place == Place::Distant && b.place != Place::Distant {
-            return Self::between(b, a, segment);
-        }
+        let (a, b) = if a.place == Place::Distant && b.place != Place::Distant { (b, a) } else { (a, b) };
         let direction = if b.place == Place::Distant {
             let outward = -b.normal;
             if b.offset == Real::INFINITY {

@@ -19,6 +19,7 @@ use crate::{
 ///
 /// `camera_path` and `light_path` are the caller's storage: how long they are caps how many vertices of a walk can be connected.
 /// The sampler's first two camera dimensions are the caller's, for `raster`.
+#[inline(always)]
 pub fn sample<'s, S: Scene, F: Film>(
     scene: &'s S,
     strategy: &Strategy,
@@ -28,13 +29,17 @@ pub fn sample<'s, S: Scene, F: Film>(
     light_path: &mut [Option<WalkVertex<'s, S, F::Rivals>>],
     film: &mut F,
 ) {
+    let strategy = &strategy.within(S::EFFECTS);
     let techniques = &strategy.techniques;
     let joined_length = strategy.joined_length(camera_path.len().min(light_path.len()));
-    let walks = light_walks(techniques, sampler);
+    let walks = if S::EFFECTS.light_walks { light_walks(techniques, sampler) } else { 0 };
     // What no light walk comes to is not kept.
     let kept = if walks > 0 { camera_path.len() } else { 0 };
     let kept = &mut camera_path[..kept];
     let seen = if techniques.camera_walk() { camera_walk(scene, strategy, joined_length, sampler, raster, kept, film) } else { 0 };
+    if !S::EFFECTS.light_walks {
+        return;
+    }
     for number in 0..walks {
         let lit = light_walk(scene, strategy, joined_length, number, sampler, light_path, film);
         if seen > 0 && lit > 0 {

@@ -20,7 +20,7 @@ pub trait Sampler {
     fn next(&mut self) -> Real;
 
     /// The numbers of this dimension and the one after it.
-    #[inline]
+    #[inline(always)]
     fn next_pair(&mut self) -> [Real; 2] {
         [self.next(), self.next()]
     }

@@ -4,6 +4,7 @@ use crate::{
     bsdf::Bsdf,
     camera::Camera,
     density::Chance,
+    effects::Effects,
     light::Light,
     point::{Point, Ray, Segment},
     real::Real,
@@ -13,6 +14,9 @@ use crate::{
 ///
 /// Every method is infallible: a scene that can fail answers black, notes the fault, and its owner looks once per path.
 pub trait Scene {
+    /// What sampling it may need. It is read when the kernel is compiled for the scene: `if S::EFFECTS.environment { … }`.
+    const EFFECTS: Effects = Effects::ALL;
+
     /// What the scene remembers of a ray's end, to find surface and light there.
     type Hit: Copy;
     /// Names a light.
@@ -61,11 +65,12 @@ pub trait Scene {
         &[]
     }
 
-    /// Chooses a light with a number in [0, 1): to light the receiver `lit`, or, without one, to start a light walk.
-    /// Unless told otherwise, each light as often as the next.
-    fn pick_light(&self, lit: Option<&Point>, u: Real) -> Option<(Self::LightId, Chance)> {
+    /// Chooses a light with a number in [0, 1), which need not be asked for: to light the receiver `lit`, or, without one, to start
+    /// a light walk. Unless told otherwise, each light as often as the next. Of the receiver, as for [`Light`], nothing counts but
+    /// position, geometric normal and place.
+    fn pick_light(&self, lit: Option<&Point>, u: impl FnOnce() -> Real) -> Option<(Self::LightId, Chance)> {
         let lights = self.lights();
-        let id = *lights.get((u * lights.len() as Real) as usize)?;
+        let id = *lights.get((u() * lights.len() as Real) as usize)?;
         Some((id, self.light_chance(id, lit)))
     }
 

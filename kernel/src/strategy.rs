@@ -1,6 +1,9 @@
 //! What one call of [`sample`](crate::sample::sample) is to do.
 
-use crate::technique::{Heuristic, Join, Techniques};
+use crate::{
+    effects::Effects,
+    technique::{Heuristic, Join, Techniques},
+};
 
 /// The plan for a pass: which techniques, how they share, how far paths go.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,8 +24,32 @@ impl Strategy {
         Self { techniques, heuristic: Heuristic::Balance, max_depth, rr_depth: 5 }
     }
 
+    /// As much of it as those effects leave: the loop that samples and the weight that divides both ask what this returns.
+    #[inline(always)]
+    pub(crate) fn within(&self, effects: Effects) -> Self {
+        let Self { mut techniques, heuristic, max_depth, rr_depth } = *self;
+        if !effects.light_walks {
+            techniques = Techniques { connection: 0.0, lens_splat: 0.0, lens_hit: 0.0, ..techniques };
+        }
+        if !effects.several_next_events {
+            techniques.next_event = if techniques.uses(Join::NextEvent) { 1.0 } else { 0.0 };
+        }
+        Self { techniques, heuristic: if effects.power_heuristic { heuristic } else { Heuristic::Balance }, max_depth, rr_depth }
+    }
+
+    /// What these techniques and their heuristic need of the kernel.
+    pub const fn effects(&self) -> Effects {
+        Effects {
+            light_walks: self.techniques.light_walk(),
+            several_next_events: self.techniques.next_event > 1.0,
+            power_heuristic: matches!(self.heuristic, Heuristic::Power),
+            ..Effects::NONE
+        }
+    }
+
     /// The longest path that every technique may make when `stored` light vertices can be kept: a connection can only reach
     /// what was stored. Longer paths are left to s = 0 and s = 1, whose weights know it.
+    #[inline(always)]
     pub(crate) fn joined_length(&self, stored: usize) -> u32 {
         if self.techniques.uses(Join::Connection) {
             u32::try_from(stored).unwrap_or(u32::MAX).saturating_add(1).min(self.max_depth)

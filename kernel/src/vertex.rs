@@ -6,16 +6,17 @@ use crate::{
     math::dot,
     point::Point,
     real::{Real, Vec3},
+    sampler::Sampler,
+    scene::Scene,
     spectrum::Spectrum,
     technique::Join,
     weight::Step,
 };
 
 /// A point of a walk with its surface and the direction the walk came from.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Vertex<B> {
+pub(crate) struct Vertex<'s, S: Scene + 's> {
     pub point: Point,
-    pub bsdf: B,
+    pub bsdf: S::Bsdf<'s>,
     pub lobes: Lobe,
     /// Towards where the walk came from, in the world and in the shading frame.
     pub from: Vec3,
@@ -34,73 +35,71 @@ pub(crate) struct Bounce {
     pub eta: Real,
 }
 
-impl<B: Bsdf> Vertex<B> {
+impl<'s, S: Scene + 's> Vertex<'s, S> {
     /// `None` where the walk arrived on different sides of the geometric and of the shading normal.
-    #[inline]
-    pub fn new(point: Point, bsdf: B, from: Vec3, carried: Carried) -> Option<Self> {
-        point.same_side(from).then(|| Self { lobes: bsdf.lobes(), wo: point.frame.to_local(from), point, bsdf, from, carried })
+    #[inline(always)]
+    pub fn new(point: Point, bsdf: S::Bsdf<'s>, from: Vec3, carried: Carried) -> Option<Self> {
+        let wo = point.frame.to_local(from);
+        same_side::<S>(&point, from, wo.z).then(|| Self { lobes: bsdf.lobes(), wo, point, bsdf, from, carried })
     }
 
     /// Whether a path can be joined here.
-    #[inline]
+    #[inline(always)]
     pub fn joins(&self) -> bool {
         self.lobes.intersects(Lobe::SMOOTH)
     }
 
     /// `toward` in the shading frame; `None` where nothing can be scattered, whatever the directions are beyond their sides.
-    #[inline]
+    #[inline(always)]
     pub fn local(&self, toward: Vec3) -> Option<Vec3> {
-        if !self.point.same_side(toward) {
+        let wi = self.point.frame.to_local(toward);
+        if !same_side::<S>(&self.point, toward, wi.z) {
             return None;
         }
-        let wi = self.point.frame.to_local(toward);
         let lobes = if wi.z * self.wo.z > 0.0 { Lobe::SMOOTH_REFLECTION } else { Lobe::SMOOTH_TRANSMISSION };
         self.lobes.intersects(lobes).then_some(wi)
     }
 
-    /// What the smooth lobes answered towards `toward`, the adjoint factor of the shading normal included;
-    /// `None` where nothing is scattered there.
-    #[inline]
-    pub fn scattered(&self, toward: Vec3, mut scatter: Scatter) -> Option<Scatter> {
-        if scatter.value.is_black() {
-            return None;
-        }
+    /// What the smooth lobes answered towards `toward`, the adjoint factor of the shading normal included.
+    #[inline(always)]
+    pub fn scattered(&self, toward: Vec3, mut scatter: Scatter) -> Scatter {
         if self.carried == Carried::Importance {
             scatter.value = scatter.value * self.adjoint(toward);
         }
-        Some(scatter)
+        scatter
     }
 
     /// The smooth lobes towards `toward`.
-    #[inline]
+    #[inline(always)]
     pub fn scatter(&self, toward: Vec3) -> Option<Scatter> {
-        self.scattered(toward, self.bsdf.eval(self.wo, self.local(toward)?, self.carried))
+        Some(self.scattered(toward, self.bsdf.eval(self.wo, self.local(toward)?, self.carried)))
     }
 
     /// The smooth lobes towards `toward`, if there is such a direction, and where the walk goes on.
-    #[inline]
+    #[inline(always)]
     pub fn scatter_and_bounce(&self, toward: Option<Vec3>, u: [Real; 3]) -> (Option<Scatter>, Option<Bounce>) {
         let Some((toward, wi)) = toward.and_then(|toward| Some((toward, self.local(toward)?))) else { return (None, self.bounce(u)) };
         let (scatter, sampled) = self.bsdf.eval_and_sample(self.wo, wi, u, self.carried);
-        (self.scattered(toward, scatter), sampled.and_then(|sampled| self.gone_on(sampled)))
+        (Some(self.scattered(toward, scatter)), sampled.and_then(|sampled| self.gone_on(sampled)))
     }
 
     /// Where the walk goes on.
-    #[inline]
+    #[inline(always)]
     pub fn bounce(&self, u: [Real; 3]) -> Option<Bounce> {
         self.gone_on(self.bsdf.sample(self.wo, u, self.carried)?)
     }
 
-    #[inline]
+    #[inline(always)]
     fn gone_on(&self, sampled: Scattered) -> Option<Bounce> {
         let Scattered { wi, weight, made, eta, .. } = sampled;
         let direction = self.point.frame.to_world(wi);
-        if weight.is_black() || !self.point.same_side(direction) {
+        if weight.is_black() || !same_side::<S>(&self.point, direction, dot(direction, self.point.frame.z)) {
             return None;
         }
         let weight = if self.carried == Carried::Importance { weight * self.adjoint(direction) } else { weight };
         let (pdf, pdf_rev, delta) = match made {
             Made::Smooth { pdf, pdf_rev } => (f64::from(pdf.0), f64::from(pdf_rev.0), false),
+            Made::Delta { .. } if !S::EFFECTS.deltas => return None,
             Made::Delta { chance, chance_rev } => {
                 // A refracted bundle changes its solid angle: η_o² cos θ_o dω_o = η_i² cos θ_i dω_i. The reverse chance
                 // is per dω_o, the forward one per dω_i.
@@ -114,13 +113,26 @@ impl<B: Bsdf> Vertex<B> {
     /// |ω_o·n_s| |ω_i·n_g| / (|ω_o·n_g| |ω_i·n_s|): what a shading normal does to importance (Veach 1997, 5.3.2).
     #[inline]
     fn adjoint(&self, toward: Vec3) -> Real {
-        if self.point.normal == self.point.frame.z {
+        if !S::EFFECTS.shading_normals || self.point.normal == self.point.frame.z {
             return 1.0;
         }
         let Point { normal, frame, .. } = &self.point;
         let below = (dot(self.from, *normal) * dot(toward, frame.z)).abs();
         if below > 0.0 { (self.wo.z * dot(toward, *normal)).abs() / below } else { 0.0 }
     }
+}
+
+/// Whether the unit direction `w`, whose cosine to the shading normal is `cos`, lies on the same side of both normals.
+#[inline(always)]
+fn same_side<S: Scene>(point: &Point, w: Vec3, cos: Real) -> bool {
+    if S::EFFECTS.shading_normals { point.same_side(w) } else { cos * cos > 0.0 }
+}
+
+/// The numbers of a vertex's BSDF, to whose dimension the sampler has gone.
+#[inline(always)]
+pub(crate) fn bsdf_numbers<S: Scene>(sampler: &mut impl Sampler) -> [Real; 3] {
+    let [x, y] = sampler.next_pair();
+    [x, y, if S::EFFECTS.lobe_choice { sampler.next() } else { 0.0 }]
 }
 
 /// The density, or chance, of a direction, that of the way back, and whether it was a Dirac.

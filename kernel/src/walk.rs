@@ -9,7 +9,7 @@ use crate::{
 
 /// A vertex of a camera or light walk, kept for connections.
 pub struct WalkVertex<'s, S: Scene + 's, R = Together> {
-    pub(crate) vertex: Vertex<S::Bsdf<'s>>,
+    pub(crate) vertex: Vertex<'s, S>,
     /// What the walk carries as it arrives.
     pub(crate) throughput: Spectrum,
     pub(crate) side: Side<R>,

@@ -141,6 +141,12 @@ impl<R: Rivals> Side<R> {
         Self { per_forward: heuristic.of(1.0 / end), here: heuristic.of(hit), join, back: 0.0, earlier: R::NONE }
     }
 
+    /// What is left of [`Side::advance`] where no technique makes less of the path from this side: how the newest vertex was made.
+    #[inline]
+    pub fn alone(heuristic: Heuristic, step: &Step) -> Self {
+        Self { per_forward: heuristic.of(1.0 / (step.pdf * step.forward)), here: 0.0, join: step.join, back: 0.0, earlier: R::NONE }
+    }
+
     /// The walk's next vertex.
     #[inline]
     pub fn advance(&self, heuristic: Heuristic, step: &Step) -> Self {

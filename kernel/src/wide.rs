@@ -36,11 +36,13 @@ impl Wide {
         if !(value > 0.0 && value < f64::INFINITY) {
             return Self { value, shift: 0 };
         }
-        while value >= HIGH {
-            (value, shift) = (value * DOWN, shift + 1);
-        }
-        while value < LOW {
-            (value, shift) = (value * UP, shift - 1);
+        // Two steps reach the middle from either end of f64. That there are no more lets a sum that nobody reads be left out.
+        for _ in 0..2 {
+            if value >= HIGH {
+                (value, shift) = (value * DOWN, shift + 1);
+            } else if value < LOW {
+                (value, shift) = (value * UP, shift - 1);
+            }
         }
         Self { value, shift }
     }

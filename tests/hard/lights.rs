@@ -219,7 +219,7 @@ fn many(form: Form) -> Vec<Held> {
             sum_off = worse(sum_off, (chances.iter().sum::<f64>() - 1.0).abs());
             never += chances.iter().filter(|chance| **chance <= 0.0).count();
             for _ in 0..20_000 {
-                let picked = view.pick_light(receiver, dice.number());
+                let picked = view.pick_light(receiver, || dice.number());
                 disagreements +=
                     usize::from(!picked.is_some_and(|(id, chance)| chance.0 > 0.0 && view.light_chance(id, receiver) == chance));
             }

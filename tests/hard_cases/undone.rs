@@ -122,7 +122,7 @@ impl<'v> bidir_kernel::Scene for Undone<'v> {
         self.view.environment()
     }
 
-    fn pick_light(&self, lit: Option<&Point>, u: Real) -> Option<(Self::LightId, Chance)> {
+    fn pick_light(&self, lit: Option<&Point>, u: impl FnOnce() -> Real) -> Option<(Self::LightId, Chance)> {
         self.view.pick_light(lit, u)
     }
 

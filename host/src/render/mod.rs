@@ -20,15 +20,16 @@ use crate::{
     plugin::{Fault, Quarantine, Strictness},
     scene::{
         Scene,
+        preset::{Preset, Task},
         view::{RayCounts, View},
     },
 };
 
 pub use director::{Always, Auto, Director, Given, Leg};
-pub use numbers::Numbers;
+pub use numbers::{Numbers, Scrambled, Sobol, Source};
 pub use passes::pass_end;
 
-use numbers::{Apart, Sobol, Source};
+use numbers::Apart;
 
 /// The longest path that stored light vertices are kept for where the scene sets no limit; longer ones are left to s = 0 and s = 1.
 pub const LONGEST_JOINED: u32 = 64;
@@ -211,48 +212,68 @@ struct Worked {
 }
 
 fn chosen<S: Store>(scene: &Scene, film: &S, job: &Job, end: u32, stop: Stop) -> Worked {
-    match job.numbers {
-        Numbers::Sobol => work::<S, Sobol>(scene, film, job, end, stop),
-        Numbers::Independent => work::<S, Apart>(scene, film, job, end, stop),
+    scene.with_smallest_preset(job.strategy.effects(), Share { scene, film, job, end, stop })
+}
+
+/// One thread's share of a render.
+struct Share<'a, S> {
+    scene: &'a Scene,
+    film: &'a S,
+    job: &'a Job,
+    end: u32,
+    stop: Stop<'a>,
+}
+
+impl<S: Store> Task for Share<'_, S> {
+    type Output = Worked;
+
+    fn run<P: Preset>(self, preset: P) -> Worked {
+        let view = View::with(self.scene, preset, self.job.strictness);
+        match self.job.numbers {
+            Numbers::Sobol => self.work::<Sobol, P>(&view),
+            Numbers::Independent => self.work::<Apart, P>(&view),
+        }
     }
 }
 
-fn work<S: Store, N: Source>(scene: &Scene, film: &S, job: &Job, end: u32, stop: Stop) -> Worked {
-    let _guard = Guard(film);
-    let clock = cpu_time::ThreadTime::now();
-    let view = View::new(scene, job.strictness);
-    let (mut camera_path, mut light_path) = (storage(&job.strategy), storage(&job.strategy));
-    let mut begun = 0;
-    while !stop.asked() {
-        let Some(mut buffer) = film.claim(end) else { break };
-        let unit = buffer.unit();
-        begun = begun.max(unit.sample + 1);
-        let source = N::new(job.seed, unit.sample);
-        view.sandbox().begin_tile(unit.index);
-        for (x, y) in film.pixels(&unit) {
-            let pixel = u64::from(y) * u64::from(job.width) + u64::from(x);
-            let mut numbers = source.pixel(pixel);
-            numbers.seek(Walk::Camera, 0);
-            let [dx, dy] = numbers.next_pair();
-            let raster = Vec2::new(x as f32 + dx, y as f32 + dy);
-            buffer.begin(raster);
-            sample(&view, &job.strategy, &mut numbers, raster, &mut camera_path, &mut light_path, &mut buffer);
-            if view.sandbox().faulted() {
-                // Nothing of this tile is known to be whole. It is handed in empty, so that the tiles after it still arrive.
-                stop.faulted.store(true, Ordering::Relaxed);
-                buffer.clear();
-                break;
+impl<S: Store> Share<'_, S> {
+    fn work<N: Source, P: Preset>(&self, view: &View<P>) -> Worked {
+        let Self { film, job, end, stop, .. } = *self;
+        let _guard = Guard(film);
+        let clock = cpu_time::ThreadTime::now();
+        let (mut camera_path, mut light_path) = (storage(&job.strategy), storage(&job.strategy));
+        let mut begun = 0;
+        while !stop.asked() {
+            let Some(mut buffer) = film.claim(end) else { break };
+            let unit = buffer.unit();
+            begun = begun.max(unit.sample + 1);
+            let source = N::new(job.seed, unit.sample);
+            view.sandbox().begin_tile(unit.index);
+            for (x, y) in film.pixels(&unit) {
+                let pixel = u64::from(y) * u64::from(job.width) + u64::from(x);
+                let mut numbers = source.pixel(pixel);
+                numbers.seek(Walk::Camera, 0);
+                let [dx, dy] = numbers.next_pair();
+                let raster = Vec2::new(x as f32 + dx, y as f32 + dy);
+                buffer.begin(raster);
+                sample(view, &job.strategy, &mut numbers, raster, &mut camera_path, &mut light_path, &mut buffer);
+                if view.sandbox().faulted() {
+                    // Nothing of this tile is known to be whole. It is handed in empty, so that the tiles after it still arrive.
+                    stop.faulted.store(true, Ordering::Relaxed);
+                    buffer.clear();
+                    break;
+                }
+                buffer.end();
             }
-            buffer.end();
+            film.commit(buffer);
         }
-        film.commit(buffer);
+        let (quarantine, fault) = (view.sandbox().quarantine(), view.sandbox().fault());
+        Worked { begun, cpu: clock.elapsed(), rays: view.rays(), quarantine, fault }
     }
-    let (quarantine, fault) = (view.sandbox().quarantine(), view.sandbox().fault());
-    Worked { begun, cpu: clock.elapsed(), rays: view.rays(), quarantine, fault }
 }
 
 /// Storage for one walk's vertices: enough for the longest path that is joined.
-fn storage<'s, R>(strategy: &Strategy) -> Vec<Option<WalkVertex<'s, View<'s>, R>>> {
+fn storage<'s, V: bidir_kernel::Scene, R>(strategy: &Strategy) -> Vec<Option<WalkVertex<'s, V, R>>> {
     let length = strategy.max_depth.min(LONGEST_JOINED).saturating_sub(1);
     (0..length).map(|_| None).collect()
 }

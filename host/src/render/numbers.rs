@@ -19,7 +19,7 @@ pub enum Numbers {
 }
 
 /// The random numbers of one sample of every pixel.
-pub(super) trait Source {
+pub trait Source {
     /// Those of one pixel.
     type OfPixel<'a>: Sampler
     where
@@ -33,7 +33,7 @@ pub(super) trait Source {
 }
 
 /// [`Numbers::Independent`].
-pub(super) struct Apart {
+pub struct Apart {
     seed: u64,
     index: u32,
 }
@@ -60,7 +60,7 @@ const LENGTH: u32 = 1 << 16;
 /// Points of the Sobol' sequence for the first vertices of each walk, scrambled apart for each pixel (Burley 2020, "Practical Hash-based
 /// Owen Scrambling"). Samples of even and of odd number each go through the sequence under a scramble of their own: the two
 /// halves of a render stay independent, and with them its estimate of its own error.
-pub(super) struct Sobol {
+pub struct Sobol {
     apart: Apart,
     seed: u32,
     /// The unscrambled point, its bits reversed: the camera walk's dimensions, then the light walk's. All pixels share it.
@@ -69,7 +69,7 @@ pub(super) struct Sobol {
 
 /// The Sobol' points of one pixel's sample.
 #[derive(Clone, Copy)]
-pub(super) struct Scrambled<'a> {
+pub struct Scrambled<'a> {
     point: &'a [u32; 2 * STRATIFIED as usize],
     seed: u32,
     /// Into `point`; at its end or beyond, numbers come from `rest`.
@@ -99,7 +99,7 @@ impl Source for Sobol {
 }
 
 impl Sampler for Scrambled<'_> {
-    #[inline]
+    #[inline(always)]
     fn seek(&mut self, walk: Walk, dimension: u32) {
         if dimension < STRATIFIED {
             self.next = walk as u32 * STRATIFIED + dimension;
@@ -109,14 +109,20 @@ impl Sampler for Scrambled<'_> {
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn next(&mut self) -> f32 {
-        let Some(&point) = self.point.get(self.next as usize) else { return self.rest.next() };
+        let Some(&point) = self.point.get(self.next as usize) else { return further(&mut self.rest) };
         let scramble = parts::hash(self.seed.wrapping_add(self.next.wrapping_mul(0x9e37_79b9)));
         self.next += 1;
         // The upper 24 bits fill an f32 exactly.
         (parts::owen_scramble_rev(point, scramble).reverse_bits() >> 8) as f32 * (1.0 / 16_777_216.0)
     }
+}
+
+/// What comes after the Sobol' points.
+#[inline(never)]
+fn further(rest: &mut Independent) -> f32 {
+    rest.next()
 }
 
 #[cfg(test)]

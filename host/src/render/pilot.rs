@@ -25,6 +25,7 @@ use crate::{
     scene::{
         Scene,
         description::{Crop, FilmSettings},
+        preset::{Preset, Task},
         view::View,
     },
 };
@@ -285,7 +286,7 @@ fn begun<N: Source>(source: &N, [x, y]: [u32; 2]) -> (N::OfPixel<'_>, Vec2) {
     (numbers, Vec2::new(x as f32 + dx, y as f32 + dy))
 }
 
-/// Measures what samples cost, as a render takes them.
+/// Measures what samples cost, as a render takes them: each with the preset that a render would take.
 struct Timing {
     spent: Spent,
     film: Film,
@@ -293,25 +294,46 @@ struct Timing {
     crop: Crop,
 }
 
+/// Samples of these pixels, taken in one way.
+struct Timed<'a, N> {
+    view: &'a View<'a>,
+    strategy: Strategy,
+    timing: &'a Timing,
+    places: &'a [[u32; 2]],
+    sources: &'a [N],
+}
+
 impl Timing {
     /// Samples these pixels in each of the ways that costs are told from.
     fn round<N: Source>(&mut self, view: &View, all: &Strategy, places: &[[u32; 2]], sources: &[N]) {
-        for (techniques, nanoseconds) in ways(&all.techniques).into_iter().zip(&mut self.spent.nanoseconds) {
+        for (way, techniques) in ways(&all.techniques).into_iter().enumerate() {
             let strategy = Strategy { techniques, ..*all };
-            let (mut camera_path, mut light_path) = (storage(&strategy), storage(&strategy));
-            let clock = ThreadTime::now();
-            let Some(mut buffer) = self.film.claim(u32::MAX) else { return };
-            for (&place, source) in places.iter().flat_map(|place| sources.iter().map(move |source| (place, source))) {
-                let (mut numbers, raster) = begun(source, place);
-                buffer.begin(raster);
-                let mut film = Within { buffer: &mut buffer, crop: self.crop };
-                sample(view, &strategy, &mut numbers, raster, &mut camera_path, &mut light_path, &mut film);
-                buffer.end();
-            }
-            self.film.commit(buffer);
-            *nanoseconds += clock.elapsed().as_nanos() as f64;
+            let timed = Timed { view, strategy, timing: self, places, sources };
+            self.spent.nanoseconds[way] += view.scene().with_smallest_preset(strategy.effects(), timed);
         }
         self.spent.samples += (places.len() * sources.len()) as f64;
+    }
+}
+
+impl<N: Source> Task for Timed<'_, N> {
+    /// In nanoseconds.
+    type Output = f64;
+
+    fn run<P: Preset>(self, preset: P) -> f64 {
+        let Self { timing, strategy, places, sources, .. } = self;
+        let view = self.view.with_preset(preset);
+        let (mut camera_path, mut light_path) = (storage(&strategy), storage(&strategy));
+        let clock = ThreadTime::now();
+        let Some(mut buffer) = timing.film.claim(u32::MAX) else { return 0.0 };
+        for (&place, source) in places.iter().flat_map(|place| sources.iter().map(move |source| (place, source))) {
+            let (mut numbers, raster) = begun(source, place);
+            buffer.begin(raster);
+            let mut film = Within { buffer: &mut buffer, crop: timing.crop };
+            sample(&view, &strategy, &mut numbers, raster, &mut camera_path, &mut light_path, &mut film);
+            buffer.end();
+        }
+        timing.film.commit(buffer);
+        clock.elapsed().as_nanos() as f64
     }
 }
 

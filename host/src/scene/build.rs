@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use bidir_kernel::{Frame, Real, Vec3};
+use bidir_kernel::{Effects, Frame, Real, Vec3};
 use bidir_standard as standard;
 use glam::{DAffine3, DVec3};
 
@@ -20,6 +20,7 @@ use crate::{
         extent::LightExtent,
         group::Group,
         lights::{EnvironmentTables, LightId, LightSource, PluginProfile, ProfileSource, Seat, environment_frame},
+        plain::Parts,
         shape::Shape,
         surface::Finish,
     },
@@ -150,6 +151,8 @@ impl Builder<'_> {
         }
         let moved = |group: Group| Group { shapes: group.shapes.start + first..group.shapes.end + first, ..group };
         let degenerate = degenerate + groups.iter().map(|group| group.degenerate).sum::<usize>();
+        let plain = Parts::of(&camera, &shapes, &self.finishes, &lights);
+        let effects = effects(&camera, &shapes, &self.finishes, &lights, integrator.hide_emitters);
         Ok(Scene {
             camera,
             origin,
@@ -162,6 +165,8 @@ impl Builder<'_> {
             roster,
             hides_emitters: integrator.hide_emitters,
             degenerate,
+            effects,
+            plain,
         })
     }
 
@@ -223,6 +228,13 @@ impl Builder<'_> {
             EmitterKind::PluginEnvironment { to_world, shader } => (around(to_world)?, self.profile(shader)),
         })
     }
+}
+
+/// What the parts of a scene need of the kernel.
+fn effects(camera: &SceneCamera, shapes: &[Shape], finishes: &[Finish], lights: &Lights, hides_emitters: bool) -> Effects {
+    let environment = lights.environment().is_some();
+    let own = Effects { environment, hidden_emitters: hides_emitters, ..camera.effects() };
+    shapes.iter().fold(own, |all, shape| all | shape.effects() | finishes[shape.finish as usize].effects())
 }
 
 /// Centre and radius of a sphere that holds everything.

@@ -1,7 +1,7 @@
 //! The scene's camera.
 
 use bidir_kernel::{
-    Camera, Point, Real, Seen, Vec2, Vec3,
+    Camera, Effects, Point, Real, Seen, Vec2, Vec3,
     camera::{FilmPlane, Orthographic, Perspective},
 };
 use glam::{DAffine3, DVec3};
@@ -61,6 +61,15 @@ impl SceneCamera {
             Self::Perspective(camera) => (camera.position, camera.lens_radius),
             Self::Orthographic(camera) => (camera.position, camera.film.half.length()),
         }
+    }
+
+    /// What it needs of the kernel.
+    pub fn effects(&self) -> Effects {
+        let (near, far) = match self {
+            Self::Perspective(camera) => (camera.near, camera.far),
+            Self::Orthographic(camera) => (camera.near, camera.far),
+        };
+        Effects { finite_lens: self.has_lens(), clipping: near > 0.0 || far < Real::INFINITY, ..Effects::NONE }
     }
 
     /// Whether the lens has an area that light can land on.

@@ -115,7 +115,7 @@ impl<'a> Collection<'a> {
                 (Form::Cylinder(axis), outward, LightExtent::Tube(Tube { base, axis: end - base, x, radius, outward }))
             }
             Geometry::Mesh { mesh, to_world, flip_normals } => {
-                let form = MeshForm { mesh: mesh.clone(), turn: Turn::of(&to_world.matrix3) };
+                let form = MeshForm::new(mesh.clone(), Turn::of(&to_world.matrix3));
                 let outward = facing(*flip_normals);
                 let surface = self.mesh(&form, to_world, visibility, outward, shape.light.is_some());
                 (Form::Mesh(form), outward, LightExtent::Surface(surface))

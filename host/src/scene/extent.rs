@@ -61,11 +61,13 @@ impl Flat {
         Self { center, a, b, frame: Frame::from_z_and_tangent(normal, a), area, both_sides: false, offset, per_area: PerArea(1.0 / area) }
     }
 
+    #[inline(always)]
     fn at(&self, x: Real, y: Real, uv: Vec2) -> Point {
         Point::surface(self.center + self.a * x + self.b * y, self.frame.z, self.frame, uv, self.offset)
     }
 
     /// Whether the figure shines where `lit` lies.
+    #[inline(always)]
     fn faces(&self, lit: &Point) -> bool {
         self.both_sides || math::dot(lit.position - self.center, self.frame.z) > 0.0
     }
@@ -167,17 +169,17 @@ impl LightExtent {
 }
 
 impl Extent for Parallelogram {
-    #[inline]
+    #[inline(always)]
     fn sample(&self, u: [Real; 2]) -> (Point, PerArea) {
         (self.0.at(2.0 * u[0] - 1.0, 2.0 * u[1] - 1.0, Vec2::new(u[0], u[1])), self.0.per_area)
     }
 
-    #[inline]
+    #[inline(always)]
     fn density(&self, _: &Point) -> PerArea {
         self.0.per_area
     }
 
-    #[inline]
+    #[inline(always)]
     fn sample_toward(&self, lit: &Point, u: [Real; 2]) -> Option<Toward> {
         toward(&self.0, lit, || self.sample(u).0)
     }
@@ -208,7 +210,7 @@ impl Extent for Ellipse {
 
 /// A point of a flat light for a receiver on the side that it faces; none for others (Veach 1997, 10.3.4.2). A light's
 /// density stays that of its whole surface: from behind, nothing is lit that the other techniques would have to share.
-#[inline]
+#[inline(always)]
 fn toward(flat: &Flat, lit: &Point, point: impl FnOnce() -> Point) -> Option<Toward> {
     if !flat.faces(lit) {
         return None;
@@ -344,18 +346,22 @@ macro_rules! of_extent {
 }
 
 impl Extent for &LightExtent {
+    #[inline]
     fn sample(&self, u: [Real; 2]) -> (Point, PerArea) {
         of_extent!(self, shape => shape.sample(u))
     }
 
+    #[inline]
     fn density(&self, at: &Point) -> PerArea {
         of_extent!(self, shape => shape.density(at))
     }
 
+    #[inline]
     fn sample_toward(&self, lit: &Point, u: [Real; 2]) -> Option<Toward> {
         of_extent!(self, shape => shape.sample_toward(lit, u))
     }
 
+    #[inline]
     fn density_toward(&self, at: &Point, lit: &Point) -> PerArea {
         of_extent!(self, shape => shape.density_toward(at, lit))
     }

@@ -10,6 +10,8 @@ pub mod extent;
 mod group;
 pub mod lights;
 pub mod outflow;
+pub mod plain;
+pub mod preset;
 pub mod shape;
 pub mod surface;
 pub mod texture;
@@ -17,7 +19,7 @@ pub mod view;
 
 use std::sync::Arc;
 
-use bidir_kernel::{Point, Ray};
+use bidir_kernel::{Effects, Point, Ray};
 use glam::DVec3;
 
 use crate::{
@@ -28,7 +30,7 @@ use camera::SceneCamera;
 use choice::Lights;
 use description::GroupId;
 use group::{Group, Owner};
-use shape::Shape;
+use shape::{Shape, in_parts};
 use surface::Finish;
 
 /// A scene ready to be rendered; its coordinates are the file's, moved to the scene's own centre.
@@ -47,6 +49,8 @@ pub struct Scene {
     roster: Arc<Roster>,
     hides_emitters: bool,
     degenerate: usize,
+    effects: Effects,
+    plain: Option<plain::Parts>,
 }
 
 impl Scene {
@@ -58,6 +62,16 @@ impl Scene {
     /// The same scene with lights that receivers choose by power, as [`Lights::by_power`] has it.
     pub fn with_lights_by_power(self) -> Self {
         Self { lights: self.lights.by_power(), ..self }
+    }
+
+    /// The same scene, rendered as if these could occur as well: the image is the same, bit for bit.
+    pub fn with_effects(self, effects: Effects) -> Self {
+        Self { effects: self.effects | effects, ..self }
+    }
+
+    /// What sampling the scene may need of the kernel, whichever the techniques.
+    pub fn effects(&self) -> Effects {
+        self.effects
     }
 
     /// How many triangles and shapes without area were dropped.
@@ -102,6 +116,19 @@ impl Scene {
         }
     }
 
+    /// The same with the shape itself.
+    #[inline(always)]
+    fn met_shape(&self, ray: &Ray, hit: &RayHit) -> (Point, &Shape) {
+        let owner = self.owners[hit.primitive.0 as usize];
+        let Some(triangle) = owner.triangle() else {
+            let (point, shape) = self.met_in_instance(ray, hit, owner);
+            return (in_parts(&point), &self.shapes[shape as usize]);
+        };
+        let shape = &self.shapes[owner.of as usize];
+        (shape.point(&self.geometry.surface(ray, hit), triangle), shape)
+    }
+
+    #[inline(never)]
     fn met_in_instance(&self, ray: &Ray, hit: &RayHit, mut owner: Owner) -> (Point, u32) {
         let (mut triangle, mut first) = (0, 0);
         for inner in self.geometry.path(hit).skip(1) {

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use bidir_kernel::{Frame, Mat3, Point, Real, Vec2, Vec3, math};
+use bidir_kernel::{Effects, Frame, Mat3, Point, Real, Vec2, Vec3, math};
 use glam::DMat3;
 
 use crate::{
@@ -47,6 +47,8 @@ pub struct MeshForm {
     pub mesh: Arc<Mesh>,
     /// Its own coordinates → the world.
     pub turn: Turn,
+    /// Whether its vertices' normals are those of its triangles, and so tell no more than which side is out.
+    flat: bool,
 }
 
 /// What a transform does to directions, up to scale.
@@ -78,6 +80,12 @@ impl Turn {
     }
 }
 
+/// The same point of a surface, put together from its parts: a call's answer lies in memory, parts need not.
+#[inline(always)]
+pub(super) fn in_parts(point: &Point) -> Point {
+    Point::surface(point.position, point.normal, point.frame, point.uv, point.offset)
+}
+
 /// With a largest entry of 1, times `sign`.
 fn scaled(matrix: &DMat3, sign: f64) -> Mat3 {
     let largest = matrix.to_cols_array().iter().fold(0.0, |a: f64, b| a.max(b.abs()));
@@ -88,8 +96,14 @@ fn scaled(matrix: &DMat3, sign: f64) -> Mat3 {
 const TURN: Real = 2.0 * std::f32::consts::PI;
 
 impl Shape {
+    /// What its form needs of the kernel.
+    pub fn effects(&self) -> Effects {
+        let shading_normals = matches!(&self.form, Form::Mesh(form) if !form.flat);
+        Effects { shading_normals, ..Effects::NONE }
+    }
+
     /// The point of a hit; `triangle` is the number within a mesh.
-    #[inline]
+    #[inline(always)]
     pub fn point(&self, at: &SurfacePoint, triangle: u32) -> Point {
         self.turned(at, triangle, None)
     }
@@ -112,7 +126,7 @@ impl Shape {
             Form::Parallelogram(tangent) => flat(normal, *tangent, Vec2::new(local.x, local.y)),
             Form::Mesh(mesh) => {
                 let whole = turn.map(|turn| mesh.turn.then(turn));
-                mesh.point(at, triangle, self, whole.as_ref().unwrap_or(&mesh.turn))
+                in_parts(&mesh.point(at, triangle, self, whole.as_ref().unwrap_or(&mesh.turn)))
             }
             _ if !self.mapped => flat(normal, Vec3::ZERO, Vec2::ZERO),
             Form::Disk(x, y) => {
@@ -144,7 +158,25 @@ fn share_of_turn(y: Real, x: Real) -> Real {
     if turn < 0.0 { turn + 1.0 } else { turn }
 }
 
+/// Whether a triangle's vertices have no normals, or its own, to within rounding.
+fn is_flat(mesh: &Mesh, corners: [u32; 3]) -> bool {
+    if mesh.normals.is_empty() {
+        return true;
+    }
+    let [n, other, another] = corners.map(|corner| mesh.normals[corner as usize]);
+    let [a, b, c] = corners.map(|corner| Vec3::from(mesh.positions[corner as usize]).as_dvec3());
+    let (normal, across) = (Vec3::from(n).as_dvec3(), (b - a).cross(c - a));
+    let least = normal.length() * across.length();
+    n == other && n == another && least > 0.0 && normal.cross(across).length() <= 1e-6 * least
+}
+
 impl MeshForm {
+    /// A mesh that `turn` brings into the world.
+    pub fn new(mesh: Arc<Mesh>, turn: Turn) -> Self {
+        let flat = mesh.triangles.iter().all(|&corners| is_flat(&mesh, corners));
+        Self { mesh, turn, flat }
+    }
+
     fn corners<T: Copy>(&self, data: &[T], triangle: u32) -> Option<[T; 3]> {
         let [a, b, c] = self.mesh.triangles[triangle as usize];
         Some([*data.get(a as usize)?, *data.get(b as usize)?, *data.get(c as usize)?])
@@ -171,6 +203,8 @@ impl MeshForm {
         let mut shading = None;
         if !self.mesh.normals.is_empty() {
             geometric *= self.facing_in(triangle, geometric, turn);
+        }
+        if !self.flat {
             shading = self.shading_normal_in(triangle, b1, b2, turn);
         }
         let shading = shading.unwrap_or(geometric) * shape.facing;
@@ -182,9 +216,9 @@ impl MeshForm {
         Point::surface(at.position, geometric, Frame::from_z_and_tangent(shading, tangent), uv, at.offset)
     }
 
-    /// The normal between the vertices' own, unit; `None` without those, or where they cancel.
+    /// The normal between the vertices' own, unit; `None` without those, where they cancel, or where they are the triangle's.
     pub fn shading_normal(&self, triangle: u32, b1: Real, b2: Real) -> Option<Vec3> {
-        self.shading_normal_in(triangle, b1, b2, &self.turn)
+        if self.flat { None } else { self.shading_normal_in(triangle, b1, b2, &self.turn) }
     }
 
     fn shading_normal_in(&self, triangle: u32, b1: Real, b2: Real, turn: &Turn) -> Option<Vec3> {

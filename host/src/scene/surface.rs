@@ -1,11 +1,14 @@
 //! A shape's surface at a hit: a shader with its parameters looked up, one on each side.
 
-use bidir_kernel::{BATCH, Bsdf, Carried, Lobe, Real, Scatter, Scattered, Vec2, Vec3};
+use bidir_kernel::{BATCH, Bsdf, Carried, Effects, Lobe, Real, Scatter, Scattered, Vec2, Vec3};
 use bidir_standard as standard;
 
 use crate::{
     plugin::{Roster, Sandbox, ShaderId},
-    scene::description::{Distribution, Material, MaterialId, PluginShader, Texture, TexturedParameter},
+    scene::{
+        description::{Distribution, Material, MaterialId, PluginShader, Texture, TexturedParameter},
+        plain::Matt,
+    },
 };
 
 /// A built-in shader, ready to be asked.
@@ -280,6 +283,25 @@ impl Finish {
     pub fn mapped(&self) -> bool {
         let mapped = |recipe: &Recipe| recipe.varies() || recipe.anisotropic();
         mapped(&self.front) || matches!(&self.behind, Behind::Other(recipe) if mapped(recipe))
+    }
+
+    /// The finish as a diffuse surface of one colour, if it is one.
+    pub fn matt(&self) -> Option<Matt> {
+        let behind = match self.behind {
+            Behind::Itself => 1.0,
+            Behind::Mirrored => -1.0,
+            Behind::Other(_) => return None,
+        };
+        match self.front.shader {
+            Ready::Fixed(Shader::Diffuse(shader)) => Some(Matt { shader, behind }),
+            _ => None,
+        }
+    }
+
+    /// What the surface may need of the kernel. Those that are not matt are not told apart.
+    pub fn effects(&self) -> Effects {
+        let other = self.matt().is_none();
+        Effects { deltas: other, lobe_choice: other, dear_surfaces: other, refraction: other, ..Effects::NONE }
     }
 
     /// Every lobe the surface has at uv (0, 0), for what `explain` says of it.

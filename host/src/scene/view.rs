@@ -1,17 +1,17 @@
 //! The scene as one render thread sees it.
 
-use std::{cell::Cell, sync::Arc};
+use std::{cell::Cell, rc::Rc, sync::Arc};
 
-use bidir_kernel::{Chance, Point, Ray, Real, Segment};
+use bidir_kernel::{Chance, Effects, Point, Ray, Real, Segment};
 
 use crate::{
     plugin::{Sandbox, Strictness},
     rays::Geometry,
     scene::{
         Scene,
-        camera::SceneCamera,
-        lights::{LightId, SceneLight},
-        surface::Surface,
+        lights::LightId,
+        preset::{Full, Preset},
+        shape::Shape,
     },
 };
 
@@ -31,20 +31,38 @@ impl std::ops::AddAssign for RayCounts {
     }
 }
 
-/// One thread's view of the shared scene; it holds that thread's plugins and counts its rays.
+/// One thread's view of the shared scene, as a preset has it; it holds that thread's plugins and counts its rays.
 #[derive(Debug)]
-pub struct View<'a> {
+pub struct View<'a, P = Full> {
     scene: &'a Scene,
-    sandbox: Sandbox,
+    preset: P,
+    sandbox: Rc<Sandbox>,
     closest: Cell<u64>,
     any: Cell<u64>,
 }
 
 impl<'a> View<'a> {
-    /// A view with nothing counted yet.
+    /// A view of any scene, with nothing counted yet.
     pub fn new(scene: &'a Scene, strictness: Strictness) -> Self {
-        let sandbox = Sandbox::new(Arc::clone(&scene.roster), strictness);
-        Self { scene, sandbox, closest: Cell::new(0), any: Cell::new(0) }
+        Self::with(scene, Full {}, strictness)
+    }
+}
+
+impl<'a, P: Preset> View<'a, P> {
+    /// A view with a preset that covers the scene.
+    pub fn with(scene: &'a Scene, preset: P, strictness: Strictness) -> Self {
+        let sandbox = Rc::new(Sandbox::new(Arc::clone(&scene.roster), strictness));
+        Self { scene, preset, sandbox, closest: Cell::new(0), any: Cell::new(0) }
+    }
+
+    /// The same thread's view, plugins and all, with another preset that covers the scene; it counts anew.
+    pub fn with_preset<Q: Preset>(&self, preset: Q) -> View<'a, Q> {
+        View { scene: self.scene, preset, sandbox: Rc::clone(&self.sandbox), closest: Cell::new(0), any: Cell::new(0) }
+    }
+
+    /// The scene.
+    pub fn scene(&self) -> &'a Scene {
+        self.scene
     }
 
     /// This thread's plugins.
@@ -61,73 +79,78 @@ impl<'a> View<'a> {
 
 /// A ray's end: the shape it met.
 #[derive(Clone, Copy, Debug)]
-pub struct Hit {
-    shape: u32,
+pub struct Hit<'a> {
+    shape: &'a Shape,
 }
 
-impl bidir_kernel::Scene for View<'_> {
-    type Hit = Hit;
+impl<'s, P: Preset> bidir_kernel::Scene for View<'s, P> {
+    const EFFECTS: Effects = P::EFFECTS;
+    type Hit = Hit<'s>;
     type LightId = LightId;
-    type Camera = SceneCamera;
+    type Camera = P::Camera;
     type Bsdf<'a>
-        = Surface<'a>
+        = P::Bsdf<'a>
     where
         Self: 'a;
     type Light<'a>
-        = SceneLight<'a>
+        = P::Light<'a>
     where
         Self: 'a;
 
-    #[inline]
-    fn camera(&self) -> &SceneCamera {
-        &self.scene.camera
+    #[inline(always)]
+    fn camera(&self) -> &P::Camera {
+        self.preset.camera(self.scene)
     }
 
-    #[inline]
-    fn intersect(&self, ray: &Ray) -> Option<(Point, Hit)> {
+    #[inline(always)]
+    fn intersect(&self, ray: &Ray) -> Option<(Point, Hit<'s>)> {
         self.closest.set(self.closest.get() + 1);
         let hit = self.scene.geometry.closest(ray)?;
-        let (point, shape) = self.scene.met(ray, &hit);
+        let (point, shape) = self.scene.met_shape(ray, &hit);
         Some((point, Hit { shape }))
     }
 
-    #[inline]
+    #[inline(always)]
     fn unoccluded(&self, a: &Point, b: &Point, segment: Segment) -> bool {
         self.any.set(self.any.get() + 1);
         !self.scene.geometry.occluded(&Ray::between(a, b, segment))
     }
 
-    #[inline]
-    fn bsdf(&self, point: &Point, hit: Hit) -> Surface<'_> {
-        self.scene.finishes[self.scene.shapes[hit.shape as usize].finish as usize].at(point.uv, &self.sandbox)
+    #[inline(always)]
+    fn bsdf(&self, point: &Point, hit: Hit<'s>) -> P::Bsdf<'_> {
+        self.preset.bsdf(self.scene, &self.sandbox, hit.shape.finish, point.uv)
     }
 
-    #[inline]
-    fn light(&self, id: LightId) -> SceneLight<'_> {
-        self.scene.lights.get(id, &self.sandbox)
+    #[inline(always)]
+    fn light(&self, id: LightId) -> P::Light<'_> {
+        self.preset.light(self.scene, &self.sandbox, id)
     }
 
-    #[inline]
-    fn light_id_at(&self, hit: Hit) -> Option<LightId> {
-        self.scene.shapes[hit.shape as usize].light
+    #[inline(always)]
+    fn light_id_at(&self, hit: Hit<'s>) -> Option<LightId> {
+        hit.shape.light
     }
 
-    #[inline]
+    #[inline(always)]
     fn environment(&self) -> Option<LightId> {
         self.scene.lights.environment()
     }
 
-    #[inline]
-    fn pick_light(&self, lit: Option<&Point>, u: Real) -> Option<(LightId, Chance)> {
-        self.scene.lights.pick(lit, u, &self.sandbox)
+    #[inline(always)]
+    fn pick_light(&self, lit: Option<&Point>, u: impl FnOnce() -> Real) -> Option<(LightId, Chance)> {
+        // A copy, so that the receiver itself need not lie in memory.
+        self.scene.lights.only(lit).or_else(|| self.scene.lights.pick(lit.copied().as_ref(), u(), &self.sandbox))
     }
 
-    #[inline]
+    #[inline(always)]
     fn light_chance(&self, id: LightId, lit: Option<&Point>) -> Chance {
-        self.scene.lights.chance(id, lit, &self.sandbox)
+        match self.scene.lights.only(lit) {
+            Some((_, chance)) => chance,
+            None => self.scene.lights.chance(id, lit.copied().as_ref(), &self.sandbox),
+        }
     }
 
-    #[inline]
+    #[inline(always)]
     fn hides_emitters(&self) -> bool {
         self.scene.hides_emitters
     }

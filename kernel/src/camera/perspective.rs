@@ -36,6 +36,7 @@ impl Perspective {
         Self { position, axes, film, lens_radius: 0.0, focus_distance: 1.0, near: 0.0, far: Real::INFINITY }
     }
 
+    #[inline(always)]
     fn in_world(&self, v: Vec3) -> Vec3 {
         self.axes[0] * v.x + self.axes[1] * v.y + self.axes[2] * v.z
     }
@@ -44,6 +45,7 @@ impl Perspective {
         vec3(dot(v, self.axes[0]), dot(v, self.axes[1]), dot(v, self.axes[2]))
     }
 
+    #[inline(always)]
     fn lens_point(&self, lens: Vec2) -> (Point, EndDensity) {
         if self.lens_radius <= 0.0 {
             return (Point::free(self.position), EndDensity::Chance(Chance(1.0)));
@@ -57,6 +59,7 @@ impl Perspective {
     }
 
     /// The ray from the lens point `lens` along `direction`, unit and in the camera's axes.
+    #[inline(always)]
     fn seen(&self, raster: Vec2, lens: Vec2, direction: Vec3) -> Seen {
         let (point, end) = self.lens_point(lens);
         let cos = direction.z;
@@ -85,6 +88,7 @@ impl Perspective {
 }
 
 impl Camera for Perspective {
+    #[inline(always)]
     fn look(&self, raster: Vec2, lens: [Real; 2]) -> Seen {
         let at = self.film.at(raster);
         let (lens, slope) = if self.lens_radius > 0.0 {
@@ -126,5 +130,31 @@ impl Camera for Perspective {
         }
         let back = normalize(-d)?;
         Some(self.seen(self.raster(lens, back)?, lens, back))
+    }
+}
+
+/// A perspective camera whose lens is a point, whatever its radius: for scenes known to have no other.
+#[derive(Clone, Copy, Debug)]
+pub struct Pinhole(pub Perspective);
+
+impl Pinhole {
+    #[inline(always)]
+    fn as_perspective(&self) -> Perspective {
+        Perspective { lens_radius: 0.0, ..self.0 }
+    }
+}
+
+impl Camera for Pinhole {
+    #[inline(always)]
+    fn look(&self, raster: Vec2, lens: [Real; 2]) -> Seen {
+        self.as_perspective().look(raster, lens)
+    }
+
+    fn see(&self, from: &Point, lens: [Real; 2]) -> Option<Seen> {
+        self.as_perspective().see(from, lens)
+    }
+
+    fn hit(&self, _: Vec3, _: Vec3, _: Real) -> Option<Seen> {
+        None
     }
 }

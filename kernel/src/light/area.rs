@@ -62,7 +62,7 @@ fn profile_frame(at: &Point) -> Frame {
 }
 
 impl<E: Extent, P: Profile> AreaLight<E, P> {
-    #[inline]
+    #[inline(always)]
     fn exit(&self, at: &Point, toward: Vec3, end: PerArea) -> Exit {
         let out = self.profile.eval(at.uv, profile_frame(at).to_local(toward));
         Exit { radiance: out.radiance, end: EndDensity::Area(end), spread: Spread::SolidAngle(out.pdf) }
@@ -82,14 +82,14 @@ impl<E: Extent, P: Profile> Light for AreaLight<E, P> {
         })
     }
 
-    #[inline]
+    #[inline(always)]
     fn illuminate(&self, lit: &Point, u: [Real; 2]) -> Option<Illumination> {
         let Toward { point, density, direction, weight } = self.extent.sample_toward(lit, u)?;
         let exit = self.exit(&point, -direction, self.extent.density(&point));
         Some(Illumination { point, direction, weight: exit.radiance * weight, density: EndDensity::Area(density), exit })
     }
 
-    #[inline]
+    #[inline(always)]
     fn emitted(&self, at: &Point, toward: Vec3) -> Exit {
         self.exit(at, toward, self.extent.density(at))
     }

@@ -95,9 +95,19 @@ impl Lights {
         self.sources[id.0 as usize].asked(sandbox)
     }
 
+    /// What [`Lights::pick`] answers a receiver that is not infinitely far away where there is but one light: whatever the number is.
+    #[inline(always)]
+    pub fn only(&self, lit: Option<&Point>) -> Option<(LightId, Chance)> {
+        let near = lit.is_some_and(|lit| lit.place != Place::Distant);
+        (near && self.sources.len() == 1 && matches!(self.next_event, NextEvent::Each)).then_some((LightId(0), Chance(1.0)))
+    }
+
     /// Chooses a light for `lit`, or, without one, to start a light walk from. A receiver that is infinitely far away looks at none.
     #[inline]
     pub fn pick(&self, lit: Option<&Point>, u: Real, sandbox: &Sandbox) -> Option<(LightId, Chance)> {
+        if let Some(only) = self.only(lit) {
+            return Some(only);
+        }
         match (&self.next_event, lit) {
             (NextEvent::Each, Some(lit)) if lit.place != Place::Distant => self.pick_reaching(lit, u, sandbox),
             (NextEvent::Clusters(many), Some(lit)) if lit.place != Place::Distant => many.pick(lit, u),
@@ -122,9 +132,6 @@ impl Lights {
     }
 
     fn pick_reaching(&self, lit: &Point, u: Real, sandbox: &Sandbox) -> Option<(LightId, Chance)> {
-        if self.sources.len() == 1 {
-            return Some((LightId(0), Chance(1.0)));
-        }
         let mut reaching = [0.0; MOST_LOOKED_AT];
         let mut total = 0.0;
         for (slot, source) in reaching.iter_mut().zip(&self.sources) {

@@ -73,7 +73,7 @@ pub fn roof(center: Vec3, x: Vec3, y: Vec3, outward: Real) -> LightExtent {
         cumulative.push(sum);
         triangles.push(([p, q, r], cross.normalize().as_vec3() * outward));
     }
-    let form = MeshForm { mesh: Arc::new(mesh), turn: Turn::of(&DMat3::IDENTITY) };
+    let form = MeshForm::new(Arc::new(mesh), Turn::of(&DMat3::IDENTITY));
     LightExtent::Surface(Surface { triangles, numbers: vec![0, 1], form, outward, cumulative, center })
 }
 
