@@ -82,7 +82,10 @@ impl<'s, S: Scene, P: Sampler, F: Film> CameraWalk<'_, 's, S, P, F> {
         let mut eta_scale: Real = 1.0;
         let mut stored = 0;
         let mut length = 1;
-        while length <= max_depth {
+        if max_depth == 0 {
+            return 0;
+        }
+        loop {
             let join = if length == 1 { Join::LensSplat } else { Join::Connection };
             let instead = (join, techniques.effort(join));
             let Some((point, hit)) = scene.intersect(&ray) else {
@@ -143,7 +146,6 @@ impl<'s, S: Scene, P: Sampler, F: Film> CameraWalk<'_, 's, S, P, F> {
             ray = Ray::leaving(&point, direction, Segment::Inner);
             length += 1;
         }
-        stored
     }
 
     /// Two numbers for a point of the lens.
@@ -214,7 +216,7 @@ impl<'s, S: Scene, P: Sampler, F: Film> CameraWalk<'_, 's, S, P, F> {
                 self.next_event(vertex, end, &lit, &scatter);
             }
             turn += 1;
-            if !S::EFFECTS.several_next_events {
+            if !S::EFFECTS.other_counts {
                 break;
             }
         }
@@ -246,7 +248,7 @@ impl<'s, S: Scene, P: Sampler, F: Film> CameraWalk<'_, 's, S, P, F> {
     fn next_event(&mut self, vertex: &Vertex<'s, S>, end: &End<F::Rivals>, lit: &Lit<S::LightId>, scatter: &Scatter) {
         let Strategy { techniques, heuristic, .. } = *self.strategy;
         let (Lit { id, chance, sampled }, point) = (lit, &vertex.point);
-        let per_sample = if S::EFFECTS.several_next_events { techniques.next_event as Real } else { 1.0 } * chance.0;
+        let per_sample = if S::EFFECTS.other_counts { techniques.next_event as Real } else { 1.0 } * chance.0;
         let value = end.throughput * scatter.value * sampled.weight / per_sample;
         if value.is_black() || !self.scene.unoccluded(point, &sampled.point, Segment::Inner) {
             return;

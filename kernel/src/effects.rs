@@ -8,8 +8,8 @@ use core::ops::BitOr;
 pub struct Effects {
     /// Walks from lights: connections, lens splats and lens hits. Where they are left out, a strategy's are switched off.
     pub light_walks: bool,
-    /// More than one next event at a vertex. Where it is left out, a strategy has one or none.
-    pub several_next_events: bool,
+    /// Other counts of light hits and next events than one of each at a vertex. Where it is left out, a strategy has one of each.
+    pub other_counts: bool,
     /// Weights by another heuristic than the balance heuristic. Where it is left out, a strategy's is the balance heuristic.
     pub power_heuristic: bool,
     /// Light from infinitely far away all around: rays that escape land on it.
@@ -36,7 +36,7 @@ impl Effects {
     /// Whatever may be.
     pub const ALL: Self = Self {
         light_walks: true,
-        several_next_events: true,
+        other_counts: true,
         power_heuristic: true,
         environment: true,
         deltas: true,
@@ -52,7 +52,7 @@ impl Effects {
     /// Paths from the camera between surfaces of one lobe, lit by lights that have a place.
     pub const NONE: Self = Self {
         light_walks: false,
-        several_next_events: false,
+        other_counts: false,
         power_heuristic: false,
         environment: false,
         deltas: false,
@@ -78,11 +78,11 @@ impl Effects {
     }
 
     const fn each(self) -> [bool; 12] {
-        let Self { light_walks, several_next_events, power_heuristic, environment, deltas, lobe_choice, .. } = self;
+        let Self { light_walks, other_counts, power_heuristic, environment, deltas, lobe_choice, .. } = self;
         let Self { dear_surfaces, refraction, shading_normals, finite_lens, clipping, hidden_emitters, .. } = self;
         [
             light_walks,
-            several_next_events,
+            other_counts,
             power_heuristic,
             environment,
             deltas,
@@ -103,7 +103,7 @@ impl BitOr for Effects {
     fn bitor(self, other: Self) -> Self {
         Self {
             light_walks: self.light_walks | other.light_walks,
-            several_next_events: self.several_next_events | other.several_next_events,
+            other_counts: self.other_counts | other.other_counts,
             power_heuristic: self.power_heuristic | other.power_heuristic,
             environment: self.environment | other.environment,
             deltas: self.deltas | other.deltas,

@@ -31,8 +31,8 @@ impl Strategy {
         if !effects.light_walks {
             techniques = Techniques { connection: 0.0, lens_splat: 0.0, lens_hit: 0.0, ..techniques };
         }
-        if !effects.several_next_events {
-            techniques.next_event = if techniques.uses(Join::NextEvent) { 1.0 } else { 0.0 };
+        if !effects.other_counts {
+            techniques = Techniques { light_hit: 1.0, next_event: 1.0, ..techniques };
         }
         Self { techniques, heuristic: if effects.power_heuristic { heuristic } else { Heuristic::Balance }, max_depth, rr_depth }
     }
@@ -41,7 +41,7 @@ impl Strategy {
     pub const fn effects(&self) -> Effects {
         Effects {
             light_walks: self.techniques.light_walk(),
-            several_next_events: self.techniques.next_event > 1.0,
+            other_counts: self.techniques.light_hit != 1.0 || self.techniques.next_event != 1.0,
             power_heuristic: matches!(self.heuristic, Heuristic::Power),
             ..Effects::NONE
         }

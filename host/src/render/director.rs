@@ -63,6 +63,9 @@ impl Director for Given {
 /// The share of a render's time that pilots may take.
 const SHARE: f64 = 0.02;
 
+/// Of that, what they look for; the rest is for choosing.
+const LOOKING: f64 = 0.75;
+
 /// Pixels that the first pilot looks at, at least and at most.
 const FIRST: [f64; 2] = [32.0, 1_024.0];
 
@@ -123,7 +126,7 @@ impl Auto {
         let start = Instant::now();
         let under_way = self.plan.last().copied();
         if self.open.len() > 1 {
-            self.pilot.look(scene, job, time, pixels);
+            self.pilot.look(scene, job, time.mul_f64(LOOKING), pixels);
             // Where nothing varies that was seen, there may be something that was not.
             self.choice = choose(&self.open, self.pilot.evidence(), &self.pilot.costs(), self.until(job), under_way.as_ref())
                 .filter(|choice| choice.chosen.error.is_some_and(|error| error > 0.0))

@@ -46,7 +46,7 @@ pub struct Any<const LIGHT_WALKS: bool>;
 /// Whatever may be.
 pub type Full = Any<true>;
 
-/// Plain scenes; without `LIGHT_WALKS`, paths from the camera alone.
+/// Plain scenes; without `LIGHT_WALKS`, path tracing with one next event alone.
 #[derive(Clone, Copy, Debug)]
 pub struct Plain<'a, const LIGHT_WALKS: bool>(&'a Parts);
 
@@ -73,7 +73,7 @@ impl<const LIGHT_WALKS: bool> Preset for Any<LIGHT_WALKS> {
 }
 
 impl<'a, const LIGHT_WALKS: bool> Preset for Plain<'a, LIGHT_WALKS> {
-    const EFFECTS: Effects = Effects { light_walks: LIGHT_WALKS, power_heuristic: LIGHT_WALKS, ..Effects::NONE };
+    const EFFECTS: Effects = Effects { light_walks: LIGHT_WALKS, other_counts: LIGHT_WALKS, power_heuristic: LIGHT_WALKS, ..Effects::NONE };
     type Camera = bidir_kernel::camera::Pinhole;
     type Bsdf<'v>
         = Matt
