@@ -7,29 +7,26 @@ mod director;
 mod numbers;
 mod passes;
 mod pilot;
+mod share;
 
 use std::{
     sync::atomic::{AtomicBool, Ordering},
     time::{Duration, Instant},
 };
 
-use bidir_kernel::{Sampler, Strategy, Vec2, Walk, WalkVertex, sample};
+use bidir_kernel::{Strategy, WalkVertex};
 
 use crate::{
-    film::{Exposure, Store},
     plugin::{Fault, Quarantine, Strictness},
-    scene::{
-        Scene,
-        preset::{Preset, Task},
-        view::{RayCounts, View},
-    },
+    scene::{Scene, view::RayCounts},
 };
 
 pub use director::{Always, Auto, Director, Given, Leg};
 pub use numbers::{Numbers, Scrambled, Sobol, Source};
 pub use passes::pass_end;
+pub use share::Canvas;
 
-use numbers::Apart;
+use share::{Share, Stop, Worked};
 
 /// The longest path that stored light vertices are kept for where the scene sets no limit; longer ones are left to s = 0 and s = 1.
 pub const LONGEST_JOINED: u32 = 64;
@@ -87,12 +84,12 @@ pub struct Status {
 
 /// Renders onto an empty `film`. After each pass, `report` is told where the render stands and answers the estimated error,
 /// where it knows one; raising `interrupt` ends the render after the sample under way.
-pub fn render<S: Store>(scene: &Scene, film: &S, job: &Job, interrupt: &AtomicBool, report: impl FnMut(&Status) -> Option<f64>) -> Status {
+pub fn render<S: Canvas>(scene: &Scene, film: &S, job: &Job, interrupt: &AtomicBool, report: impl FnMut(&Status) -> Option<f64>) -> Status {
     directed(scene, film, job, &mut Always, interrupt, report)
 }
 
 /// [`render`] with a director, who says between passes what is sampled next.
-pub fn directed<S: Store>(
+pub fn directed<S: Canvas>(
     scene: &Scene,
     film: &S,
     job: &Job,
@@ -158,11 +155,11 @@ fn affordable(status: &Status, target: Target, pace: Option<f64>) -> u32 {
 }
 
 /// Renders every unit whose sample is below `end`; returns the samples of which a unit was begun. `None` if no thread could do any work.
-fn run<S: Store>(scene: &Scene, film: &S, job: &Job, end: u32, interrupt: Option<&AtomicBool>, status: &mut Status) -> Option<u32> {
+fn run<S: Canvas>(scene: &Scene, film: &S, job: &Job, end: u32, interrupt: Option<&AtomicBool>, status: &mut Status) -> Option<u32> {
     let faulted = AtomicBool::new(false);
     let stop = Stop { interrupt, faulted: &faulted };
     let workers: Vec<Option<Worked>> = std::thread::scope(|scope| {
-        let workers: Vec<_> = (0..job.threads.max(1)).map(|_| scope.spawn(|| chosen(scene, film, job, end, stop))).collect();
+        let workers: Vec<_> = (0..job.threads.max(1)).map(|_| scope.spawn(|| S::share(Share { scene, film, job, end, stop }))).collect();
         workers.into_iter().map(|worker| worker.join().ok()).collect()
     });
     let mut begun = status.samples;
@@ -175,101 +172,6 @@ fn run<S: Store>(scene: &Scene, film: &S, job: &Job, end: u32, interrupt: Option
         status.fault = status.fault.take().or(worked.fault);
     }
     Some(begun)
-}
-
-/// Lets the other threads go if this one breaks down: what it had claimed never arrives.
-struct Guard<'a, S: Store>(&'a S);
-
-impl<S: Store> Drop for Guard<'_, S> {
-    fn drop(&mut self) {
-        if std::thread::panicking() {
-            self.0.abandon();
-        }
-    }
-}
-
-/// Why threads begin no other unit.
-#[derive(Clone, Copy)]
-struct Stop<'a> {
-    interrupt: Option<&'a AtomicBool>,
-    /// Set by the thread whose plugin broke off.
-    faulted: &'a AtomicBool,
-}
-
-impl Stop<'_> {
-    fn asked(&self) -> bool {
-        self.faulted.load(Ordering::Relaxed) || self.interrupt.is_some_and(|interrupt| interrupt.load(Ordering::Relaxed))
-    }
-}
-
-/// What one thread did.
-struct Worked {
-    begun: u32,
-    cpu: Duration,
-    rays: RayCounts,
-    quarantine: Quarantine,
-    fault: Option<Fault>,
-}
-
-fn chosen<S: Store>(scene: &Scene, film: &S, job: &Job, end: u32, stop: Stop) -> Worked {
-    scene.with_smallest_preset(job.strategy.effects(), Share { scene, film, job, end, stop })
-}
-
-/// One thread's share of a render.
-struct Share<'a, S> {
-    scene: &'a Scene,
-    film: &'a S,
-    job: &'a Job,
-    end: u32,
-    stop: Stop<'a>,
-}
-
-impl<S: Store> Task for Share<'_, S> {
-    type Output = Worked;
-
-    fn run<P: Preset>(self, preset: P) -> Worked {
-        let view = View::with(self.scene, preset, self.job.strictness);
-        match self.job.numbers {
-            Numbers::Sobol => self.work::<Sobol, P>(&view),
-            Numbers::Independent => self.work::<Apart, P>(&view),
-        }
-    }
-}
-
-impl<S: Store> Share<'_, S> {
-    fn work<N: Source, P: Preset>(&self, view: &View<P>) -> Worked {
-        let Self { film, job, end, stop, .. } = *self;
-        let _guard = Guard(film);
-        let clock = cpu_time::ThreadTime::now();
-        let (mut camera_path, mut light_path) = (storage(&job.strategy), storage(&job.strategy));
-        let mut begun = 0;
-        while !stop.asked() {
-            let Some(mut buffer) = film.claim(end) else { break };
-            let unit = buffer.unit();
-            begun = begun.max(unit.sample + 1);
-            let source = N::new(job.seed, unit.sample);
-            view.sandbox().begin_tile(unit.index);
-            for (x, y) in film.pixels(&unit) {
-                let pixel = u64::from(y) * u64::from(job.width) + u64::from(x);
-                let mut numbers = source.pixel(pixel);
-                numbers.seek(Walk::Camera, 0);
-                let [dx, dy] = numbers.next_pair();
-                let raster = Vec2::new(x as f32 + dx, y as f32 + dy);
-                buffer.begin(raster);
-                sample(view, &job.strategy, &mut numbers, raster, &mut camera_path, &mut light_path, &mut buffer);
-                if view.sandbox().faulted() {
-                    // Nothing of this tile is known to be whole. It is handed in empty, so that the tiles after it still arrive.
-                    stop.faulted.store(true, Ordering::Relaxed);
-                    buffer.clear();
-                    break;
-                }
-                buffer.end();
-            }
-            film.commit(buffer);
-        }
-        let (quarantine, fault) = (view.sandbox().quarantine(), view.sandbox().fault());
-        Worked { begun, cpu: clock.elapsed(), rays: view.rays(), quarantine, fault }
-    }
 }
 
 /// Storage for one walk's vertices: enough for the longest path that is joined.

@@ -1,0 +1,135 @@
+//! What one thread does of a render: it claims units, samples their pixels, and commits them.
+
+use std::{
+    sync::atomic::{AtomicBool, Ordering},
+    time::Duration,
+};
+
+use bidir_kernel::{Sampler, Vec2, Walk, sample};
+
+use super::{
+    Job, Numbers,
+    numbers::{Apart, Sobol, Source},
+    storage,
+};
+use crate::{
+    film::{Exposure, Film, Pyramid, Store},
+    plugin::{Fault, Quarantine},
+    scene::{
+        Scene,
+        preset::{Full, Preset, Task},
+        view::{RayCounts, View},
+    },
+};
+
+/// What can be rendered onto. Sampling is compiled here, once for each, and not again wherever something is rendered.
+pub trait Canvas: Store + Sized {
+    /// One thread's share.
+    fn share(share: Share<'_, Self>) -> Worked;
+}
+
+impl Canvas for Film {
+    fn share(share: Share<'_, Self>) -> Worked {
+        share.scene.with_smallest_preset(share.job.strategy.effects(), share)
+    }
+}
+
+impl Canvas for Pyramid {
+    /// With the preset for any scene: pyramids are looked at, and not waited for.
+    fn share(share: Share<'_, Self>) -> Worked {
+        share.run(Full {})
+    }
+}
+
+/// Lets the other threads go if this one breaks down: what it had claimed never arrives.
+struct Guard<'a, S: Store>(&'a S);
+
+impl<S: Store> Drop for Guard<'_, S> {
+    fn drop(&mut self) {
+        if std::thread::panicking() {
+            self.0.abandon();
+        }
+    }
+}
+
+/// Why threads begin no other unit.
+#[derive(Clone, Copy, Debug)]
+pub struct Stop<'a> {
+    pub(super) interrupt: Option<&'a AtomicBool>,
+    /// Set by the thread whose plugin broke off.
+    pub(super) faulted: &'a AtomicBool,
+}
+
+impl Stop<'_> {
+    fn asked(&self) -> bool {
+        self.faulted.load(Ordering::Relaxed) || self.interrupt.is_some_and(|interrupt| interrupt.load(Ordering::Relaxed))
+    }
+}
+
+/// What one thread did.
+#[derive(Debug)]
+pub struct Worked {
+    pub(super) begun: u32,
+    pub(super) cpu: Duration,
+    pub(super) rays: RayCounts,
+    pub(super) quarantine: Quarantine,
+    pub(super) fault: Option<Fault>,
+}
+
+/// One thread's share of a render.
+#[derive(Debug)]
+pub struct Share<'a, S> {
+    pub(super) scene: &'a Scene,
+    pub(super) film: &'a S,
+    pub(super) job: &'a Job,
+    pub(super) end: u32,
+    pub(super) stop: Stop<'a>,
+}
+
+impl<S: Store> Task for Share<'_, S> {
+    type Output = Worked;
+
+    fn run<P: Preset>(self, preset: P) -> Worked {
+        let view = View::with(self.scene, preset, self.job.strictness);
+        match self.job.numbers {
+            Numbers::Sobol => self.work::<Sobol, P>(&view),
+            Numbers::Independent => self.work::<Apart, P>(&view),
+        }
+    }
+}
+
+impl<S: Store> Share<'_, S> {
+    fn work<N: Source, P: Preset>(&self, view: &View<P>) -> Worked {
+        let Self { film, job, end, stop, .. } = *self;
+        let _guard = Guard(film);
+        let clock = cpu_time::ThreadTime::now();
+        let (mut camera_path, mut light_path) = (storage(&job.strategy), storage(&job.strategy));
+        let mut begun = 0;
+        while !stop.asked() {
+            let Some(mut buffer) = film.claim(end) else { break };
+            let unit = buffer.unit();
+            begun = begun.max(unit.sample + 1);
+            let source = N::new(job.seed, unit.sample);
+            view.sandbox().begin_tile(unit.index);
+            for (x, y) in film.pixels(&unit) {
+                let pixel = u64::from(y) * u64::from(job.width) + u64::from(x);
+                let mut numbers = source.pixel(pixel);
+                numbers.seek(Walk::Camera, 0);
+                let [dx, dy] = numbers.next_pair();
+                let raster = Vec2::new(x as f32 + dx, y as f32 + dy);
+                buffer.begin(raster);
+                sample(view, &job.strategy, &mut numbers, raster, &mut camera_path, &mut light_path, &mut buffer);
+                if view.sandbox().faulted() {
+                    // Nothing of this tile is known to be whole. It is handed in empty, so that the tiles after it still arrive.
+                    stop.faulted.store(true, Ordering::Relaxed);
+                    buffer.clear();
+                    break;
+                }
+                buffer.end();
+            }
+            film.commit(buffer);
+        }
+        let (quarantine, fault) = (view.sandbox().quarantine(), view.sandbox().fault());
+        Worked { begun, cpu: clock.elapsed(), rays: view.rays(), quarantine, fault }
+    }
+}
