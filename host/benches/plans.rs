@@ -100,6 +100,8 @@ struct Run {
 /// The pictures of one plan, seed by seed.
 struct Entrant {
     stage: Stage,
+    /// Seconds per sample.
+    pace: f64,
     runs: Vec<Run>,
 }
 
@@ -163,26 +165,30 @@ impl Subject {
         Run { relmse: against_halves(&image, halves).expect("one size").relmse_trimmed.max(f64::MIN_POSITIVE), seconds, samples }
     }
 
-    /// A fixed plan for about that long.
-    fn fixed(&self, stage: &Stage, seed: u64, seconds: f64) -> Run {
-        self.fixed_with(&mut Always, stage, seed, seconds)
+    /// A fixed plan, with as many samples as take about so long at that pace.
+    fn fixed(&self, entrant: &Entrant, seed: u64, seconds: f64) -> Run {
+        self.run(&mut Always, &self.job(&entrant.stage, seed, Target::Samples(samples(seconds, entrant.pace))))
     }
 
-    fn fixed_with(&self, director: &mut impl Director, stage: &Stage, seed: u64, seconds: f64) -> Run {
-        let (_, time, samples) = self.render(&mut Always, &self.job(stage, seed, Target::Samples(4)));
-        let samples = (seconds * f64::from(samples) / time).round().max(2.0) as u32;
-        self.run(director, &self.job(stage, seed, Target::Samples(samples)))
+    /// Seconds per sample, at a first look: what tells how many samples an equal time is.
+    fn pace(&self, stage: &Stage) -> f64 {
+        let once = |seed| {
+            let (_, seconds, samples) = self.render(&mut Always, &self.job(stage, seed, Target::Samples(4)));
+            seconds / f64::from(samples)
+        };
+        (0..3).map(once).fold(f64::INFINITY, f64::min)
     }
 
     /// Looks, and renders with what is left of the time.
-    fn auto(&self, seed: u64, seconds: f64) -> Chosen {
+    fn auto(&self, entrants: &[Entrant], seed: u64, seconds: f64) -> Chosen {
         let mut auto = Auto::new(&self.description, &self.effects);
         let job = self.job(&Stage::BIDIRECTIONAL, seed, Target::Time(Duration::from_secs_f64(seconds)));
         let clock = ProcessTime::now();
         auto.begin(&self.scene, &job);
         let pilot = clock.elapsed().as_secs_f64();
         let stage = *auto.plan().last().expect("a plan");
-        let run = self.fixed_with(&mut auto, &stage, seed, seconds - pilot);
+        let pace = entrants.iter().find(|entrant| same(&entrant.stage, &stage)).expect("an open plan").pace;
+        let run = self.run(&mut auto, &self.job(&stage, seed, Target::Samples(samples(seconds - pilot, pace))));
         let stages = auto.plan().stages.clone();
         println!("  seed {seed}: {} after {:.0} ms", stages.iter().map(words::stage).collect::<Vec<_>>().join("; then "), 1e3 * pilot);
         Chosen { run, stages, pilots: pilot, choice: auto.choice().cloned() }
@@ -199,19 +205,20 @@ impl Subject {
             number += 1;
             !all[number..].iter().any(|later| same(stage, later))
         });
-        let mut entrants: Vec<Entrant> = stages.into_iter().map(|stage| Entrant { stage, runs: Vec::new() }).collect();
+        let mut entrants: Vec<Entrant> =
+            stages.into_iter().map(|stage| Entrant { pace: self.pace(&stage), stage, runs: Vec::new() }).collect();
         for seed in [101, 102] {
-            entrants.iter_mut().for_each(|entrant| entrant.runs.push(self.fixed(&entrant.stage, seed, seconds / 4.0)));
+            entrants.iter_mut().for_each(|entrant| entrant.runs.push(self.fixed(entrant, seed, seconds / 4.0)));
         }
         let best = entrants.iter().map(|entrant| entrant.efficiency(&[0, 1])).fold(0.0, f64::max);
-        let auto: Vec<Chosen> = (0..seeds).map(|seed| self.auto(seed, seconds)).collect();
+        let auto: Vec<Chosen> = (0..seeds).map(|seed| self.auto(&entrants, seed, seconds)).collect();
         let is_chosen = |stage: &Stage| auto.iter().any(|chosen| chosen.stages.iter().any(|other| same(other, stage)));
         entrants.retain(|entrant| {
             named[..2].contains(&entrant.stage) || is_chosen(&entrant.stage) || entrant.efficiency(&[0, 1]) >= HOPELESS * best
         });
         entrants.iter_mut().for_each(|entrant| entrant.runs.clear());
         for seed in 0..seeds {
-            entrants.iter_mut().for_each(|entrant| entrant.runs.push(self.fixed(&entrant.stage, seed, seconds)));
+            entrants.iter_mut().for_each(|entrant| entrant.runs.push(self.fixed(entrant, seed, seconds)));
         }
         self.report(&entrants, &auto, &named)
     }
@@ -312,6 +319,11 @@ impl Entrant {
 fn same(a: &Stage, b: &Stage) -> bool {
     let counts = |stage: &Stage| [stage.next_event, stage.connection, stage.lens_splat];
     counts(a) == counts(b) && (a.light_hit == b.light_hit || a.techniques().camera_walk() == b.techniques().camera_walk())
+}
+
+/// How many samples take about so many seconds.
+fn samples(seconds: f64, pace: f64) -> u32 {
+    (seconds / pace).round().max(2.0) as u32
 }
 
 fn picture(file: &Path) -> Image {

@@ -22,9 +22,9 @@ use crate::{
 /// Pixels in a row.
 const SIZE: u32 = 24;
 /// Samples per pixel and batch.
-const SAMPLES: u32 = 4;
+const SAMPLES: u32 = 2;
 /// Samples per pixel that second moments are told from.
-const TOLD: u32 = 64;
+const TOLD: u32 = 32;
 /// The longest path that is connected there.
 const LONGEST: usize = 64;
 
