@@ -1,11 +1,16 @@
 //! Where a sample's random numbers come from.
 
 use bidir_kernel::{
-    Sampler, Walk,
+    Effects, Sampler, Walk,
     sampler::{DIMENSIONS_PER_VERTEX, Independent},
 };
 use serde::Serialize;
 use sobol_burley::parts;
+
+use crate::scene::{
+    Scene,
+    preset::{Full, Task},
+};
 
 /// Kinds of random numbers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum, Serialize)]
@@ -30,6 +35,9 @@ pub trait Source {
 
     /// The numbers of a pixel.
     fn pixel(&self, pixel: u64) -> Self::OfPixel<'_>;
+
+    /// Does a task with a preset that covers the scene and what else is `needed`.
+    fn with_preset<T: Task>(scene: &Scene, needed: Effects, task: T) -> T::Output;
 }
 
 /// [`Numbers::Independent`].
@@ -47,6 +55,11 @@ impl Source for Apart {
 
     fn pixel(&self, pixel: u64) -> Independent {
         Independent::new(self.seed, pixel, u64::from(self.index))
+    }
+
+    /// The one for any scene: these numbers are there to be compared with, and not compiled for every preset.
+    fn with_preset<T: Task>(_: &Scene, _: Effects, task: T) -> T::Output {
+        task.run(Full {})
     }
 }
 
@@ -95,6 +108,10 @@ impl Source for Sobol {
     fn pixel(&self, pixel: u64) -> Scrambled<'_> {
         let seed = parts::hash(parts::hash(self.seed ^ pixel as u32) ^ (pixel >> 32) as u32);
         Scrambled { point: &self.point, seed, next: 0, rest: self.apart.pixel(pixel) }
+    }
+
+    fn with_preset<T: Task>(scene: &Scene, needed: Effects, task: T) -> T::Output {
+        scene.with_smallest_preset(needed, task)
     }
 }
 

@@ -309,7 +309,7 @@ impl Timing {
         for (way, techniques) in ways(&all.techniques).into_iter().enumerate() {
             let strategy = Strategy { techniques, ..*all };
             let timed = Timed { view, strategy, timing: self, places, sources };
-            self.spent.nanoseconds[way] += view.scene().with_smallest_preset(strategy.effects(), timed);
+            self.spent.nanoseconds[way] += N::with_preset(view.scene(), strategy.effects(), timed);
         }
         self.spent.samples += (places.len() * sources.len()) as f64;
     }

@@ -1,6 +1,7 @@
 //! What one thread does of a render: it claims units, samples their pixels, and commits them.
 
 use std::{
+    marker::PhantomData,
     sync::atomic::{AtomicBool, Ordering},
     time::Duration,
 };
@@ -30,14 +31,20 @@ pub trait Canvas: Store + Sized {
 
 impl Canvas for Film {
     fn share(share: Share<'_, Self>) -> Worked {
-        share.scene.with_smallest_preset(share.job.strategy.effects(), share)
+        match share.job.numbers {
+            Numbers::Sobol => share.with::<Sobol>(),
+            Numbers::Independent => share.with::<Apart>(),
+        }
     }
 }
 
 impl Canvas for Pyramid {
     /// With the preset for any scene: pyramids are looked at, and not waited for.
     fn share(share: Share<'_, Self>) -> Worked {
-        share.run(Full {})
+        match share.job.numbers {
+            Numbers::Sobol => By::<_, Sobol>(share, PhantomData).run(Full {}),
+            Numbers::Independent => By::<_, Apart>(share, PhantomData).run(Full {}),
+        }
     }
 }
 
@@ -86,19 +93,23 @@ pub struct Share<'a, S> {
     pub(super) stop: Stop<'a>,
 }
 
-impl<S: Store> Task for Share<'_, S> {
+/// A share with its kind of numbers.
+struct By<'a, S, N>(Share<'a, S>, PhantomData<N>);
+
+impl<S: Store, N: Source> Task for By<'_, S, N> {
     type Output = Worked;
 
     fn run<P: Preset>(self, preset: P) -> Worked {
-        let view = View::with(self.scene, preset, self.job.strictness);
-        match self.job.numbers {
-            Numbers::Sobol => self.work::<Sobol, P>(&view),
-            Numbers::Independent => self.work::<Apart, P>(&view),
-        }
+        let view = View::with(self.0.scene, preset, self.0.job.strictness);
+        self.0.work::<N, P>(&view)
     }
 }
 
 impl<S: Store> Share<'_, S> {
+    fn with<N: Source>(self) -> Worked {
+        N::with_preset(self.scene, self.job.strategy.effects(), By::<_, N>(self, PhantomData))
+    }
+
     fn work<N: Source, P: Preset>(&self, view: &View<P>) -> Worked {
         let Self { film, job, end, stop, .. } = *self;
         let _guard = Guard(film);
