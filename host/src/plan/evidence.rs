@@ -14,10 +14,15 @@
 //!
 //! A render's error is trimmed, and what a plan makes so seldom that it would be on fewer pixels than are trimmed is left out here too.
 
-use std::cmp::Ordering;
+mod moments;
+mod spread;
 
 use bidir_kernel::{Join, Technique};
 
+use self::{
+    moments::{Cut, Moments},
+    spread::Spread,
+};
 use super::Stage;
 use crate::image::trim::TRIM;
 
@@ -138,15 +143,6 @@ impl Evidence {
         }
     }
 
-    /// What all camera paths of each pixel that was looked at brought.
-    fn camera_of_places(&self) -> impl Iterator<Item = &[Brought]> {
-        let mut start = 0;
-        self.places.iter().map(move |place| {
-            let end = place.end.checked_sub(1).map_or(0, |last| self.ends[last]);
-            &self.camera[std::mem::replace(&mut start, end)..end]
-        })
-    }
-
     /// Each pixel that was looked at, with its camera paths' contributions.
     fn places(&self) -> impl Iterator<Item = (u32, impl Iterator<Item = &[Brought]>)> {
         let starts = std::iter::once(0).chain(self.places.iter().map(|place| place.end));
@@ -201,9 +197,10 @@ impl Evidence {
         let counts = Counts::of(stage);
         let per_sample = 1.0 / self.samples().max(1) as f64;
         let mut moments = Moments::default();
-        let blocks = self.places.iter().map(|place| place.block).zip(self.camera_of_places());
-        for (block, brought) in blocks.flat_map(|(block, all)| all.iter().map(move |brought| (block, brought))) {
-            moments.take(&counts, brought, importance[block as usize], per_sample);
+        for (block, paths) in self.places() {
+            for brought in paths.flatten() {
+                moments.take(&counts, brought, importance[block as usize], per_sample);
+            }
         }
         for (block, brought) in &self.splats {
             moments.take(&counts, brought, importance[*block as usize], per_sample);
@@ -289,218 +286,6 @@ impl Counts {
     }
 }
 
-/// Second moments of contributions, by how large each one is: a power of two each.
-#[derive(Clone, Debug)]
-struct Moments {
-    bins: [Bin; Self::BINS],
-    /// Whether there is one that the plan never makes.
-    missed: bool,
-}
-
-/// Contributions of one size.
-#[derive(Clone, Copy, Debug, Default)]
-struct Bin {
-    /// How many a sample has.
-    all: f64,
-    /// How many elusive ones.
-    number: f64,
-    /// The sum of their squares.
-    squares: f64,
-}
-
-impl Default for Moments {
-    fn default() -> Self {
-        Self { bins: [Bin::default(); Self::BINS], missed: false }
-    }
-}
-
-impl Moments {
-    /// From 2^−64 to 2^64; what is beyond is with the last ones.
-    const BINS: usize = 128;
-
-    fn bin(square: f64) -> usize {
-        let exponent = (square.to_bits() >> 52 & 0x7ff) as i32 - 1023;
-        (exponent + Self::BINS as i32 / 2).clamp(0, Self::BINS as i32 - 1) as usize
-    }
-
-    /// A contribution of the pilot, as the plan would make it: `per` sample.
-    fn take(&mut self, counts: &Counts, brought: &Brought, importance: f64, per: f64) {
-        let density = counts.density(brought);
-        if density == 0.0 {
-            self.missed = true;
-            return;
-        }
-        let square = counts.square(brought, importance);
-        let Bin { all, number, squares } = &mut self.bins[Self::bin(square)];
-        *all += density * per;
-        if counts.elusive(brought) {
-            *number += density * per;
-            *squares += density * square * per;
-        }
-    }
-
-    /// The first bin of those largest contributions that a sample has less than so many of.
-    fn rarest(&self, number: f64) -> usize {
-        let mut sum = 0.0;
-        let past = self.bins.iter().rposition(|bin| {
-            sum += bin.number;
-            sum > number
-        });
-        past.map_or(0, |bin| bin + 1)
-    }
-
-    /// Where to cut off so many of the largest.
-    fn cut(&self, mut spare: f64) -> Cut {
-        let mut cut = Cut { bin: Self::BINS, share: 0.0 };
-        for (bin, &Bin { all: number, .. }) in self.bins.iter().enumerate().rev().filter(|(_, bin)| bin.all > 0.0) {
-            cut = Cut { bin, share: (spare / number).min(1.0) };
-            spare -= number;
-            if spare <= 0.0 {
-                break;
-            }
-        }
-        cut
-    }
-
-    /// The second moments from that bin on, but for what is cut off.
-    fn kept(&self, from: usize, cut: &Cut) -> f64 {
-        self.bins.iter().enumerate().skip(from).map(|(bin, of)| of.squares * (1.0 - cut.share_of(bin))).sum()
-    }
-}
-
-/// What is trimmed: every contribution larger than those of this bin, and some of its.
-struct Cut {
-    bin: usize,
-    share: f64,
-}
-
-impl Cut {
-    /// What is missing where such a path is trimmed, if it is elusive.
-    fn left_of(&self, counts: &Counts, brought: &Brought, importance: f64) -> f64 {
-        let share = self.share_of(Moments::bin(counts.square(brought, importance)));
-        if share > 0.0 && counts.elusive(brought) { share * brought.value } else { 0.0 }
-    }
-
-    /// How much of a bin is trimmed.
-    fn share_of(&self, bin: usize) -> f64 {
-        match bin.cmp(&self.bin) {
-            Ordering::Less => 0.0,
-            Ordering::Equal => self.share,
-            Ordering::Greater => 1.0,
-        }
-    }
-}
-
-/// What runs of camera paths vary by, beyond the second moments of their contributions: by their length, which doubles from 1 on.
-#[derive(Clone, Copy, Debug, Default)]
-struct Spread {
-    lengths: [f64; Self::LENGTHS],
-    /// What making only some of the connections adds to all lengths.
-    all: f64,
-    /// How many lengths the runs had.
-    known: usize,
-    places: f64,
-}
-
-impl Spread {
-    /// Runs of up to 32 samples.
-    const LENGTHS: usize = 6;
-
-    /// A pixel that was looked at, with its two runs in turn; what is rare is left out of them.
-    fn place<'a>(&mut self, counts: &Counts, paths: impl Iterator<Item = &'a [Brought]>, importance: f64, rare: usize) {
-        let mut runs = [[0.0; 1 << (Self::LENGTHS - 1)]; 2];
-        let (mut number, mut all) = (0, 0.0);
-        for path in paths {
-            let mut one = Sample::default();
-            for brought in path {
-                one.add(counts, brought, importance, rare);
-            }
-            if let Some(slot) = runs[number % 2].get_mut(number / 2) {
-                *slot = one.total;
-                all += one.rationed(counts);
-                number += 1;
-            }
-        }
-        let mut length = number / 2;
-        if length == 0 {
-            return;
-        }
-        self.known = length.ilog2() as usize + 1;
-        self.places += 1.0;
-        self.all += all * importance / number as f64;
-        for level in 0..self.known {
-            // Var(a − b) = 2 σ²/m for runs of m samples; all pairs of parts of the two runs are independent.
-            let parts = runs.each_ref().map(|run| {
-                let sums = run[..length].iter().fold([0.0; 2], |[sum, squares], x| [sum + x, squares + x * x]);
-                sums.map(|sum| sum / length as f64)
-            });
-            let [a, b] = parts;
-            self.lengths[level] += importance * f64::from(1 << level) * (0.5 * (a[1] + b[1]) - a[0] * b[0]);
-            length /= 2;
-            for run in &mut runs {
-                for i in 0..length {
-                    run[i] = 0.5 * (run[2 * i] + run[2 * i + 1]);
-                }
-            }
-        }
-    }
-
-    /// Of one of so many samples per pixel.
-    fn at(&self, samples: f64) -> f64 {
-        if self.places == 0.0 {
-            return 0.0;
-        }
-        let of = |level: usize| ((self.lengths[level] + self.all) / self.places).max(0.0);
-        let last = self.known - 1;
-        // Samples of even and of odd number are two runs.
-        let level = (0.5 * samples).max(1.0).log2();
-        if level <= last as f64 {
-            let (below, part) = (level as usize, level.fract());
-            return of(below) + part * (of((below + 1).min(last)) - of(below));
-        }
-        // Beyond, it is taken to go on falling as it did.
-        let (before, reached) = (of(last.saturating_sub(2)), of(last));
-        let slope = if before > 0.0 { (reached / before).sqrt().clamp(SLOPE, 1.0) } else { 1.0 };
-        reached * slope.powf((level - last as f64).min(FARTHEST))
-    }
-}
-
-/// The least that twice the samples leave of an error beyond half of it.
-const SLOPE: f64 = 0.75;
-/// Doublings for which an error may fall so.
-const FARTHEST: f64 = 6.0;
-
-/// What a camera path and its light path would have brought.
-#[derive(Clone, Copy, Debug, Default)]
-struct Sample {
-    total: f64,
-    connected: f64,
-    squares: f64,
-}
-
-impl Sample {
-    fn add(&mut self, counts: &Counts, brought: &Brought, importance: f64, rare: usize) {
-        let join = brought.technique.join();
-        let count = counts.of[join as usize];
-        let value = brought.value / counts.density(brought);
-        if count == 0.0 || counts.rare(brought, importance, rare) {
-            return;
-        }
-        self.total += count * value;
-        if join == Join::Connection {
-            self.connected += value;
-            self.squares += value * value;
-        }
-    }
-
-    /// What making only some of the connections adds.
-    fn rationed(&self, counts: &Counts) -> f64 {
-        let count = counts.of[Join::Connection as usize];
-        let Self { connected, squares, .. } = self;
-        counts.both_connected * (connected * connected - squares) + count * squares - count * count * connected * connected
-    }
-}
-
 /// The shares of the kinds of join in a contribution that was weighed own / (own + rivals).
 pub fn shares(technique: Technique, own: f64, rivals: impl Fn(Join) -> f64) -> [f64; Join::COUNT] {
     let mut efforts = Join::ALL.map(rivals);
@@ -514,7 +299,7 @@ pub fn shares(technique: Technique, own: f64, rivals: impl Fn(Join) -> f64) -> [
 mod tests {
     use bidir_kernel::Techniques;
 
-    use super::*;
+    use super::{spread::SLOPE, *};
 
     fn one_block() -> Evidence {
         Evidence::new(vec![1.0], 1)
