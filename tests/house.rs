@@ -8,8 +8,8 @@ use std::{
 use bidir::load::catalog;
 
 /// A module of the host uses only what stands to its left.
-const ORDER: [&str; 13] =
-    ["error", "partial", "image", "rays", "plugin", "scene", "load", "plan", "film", "render", "compare", "check", "cli"];
+const ORDER: [&str; 14] =
+    ["error", "partial", "image", "rays", "plugin", "scene", "load", "plan", "film", "render", "compare", "check", "cost", "cli"];
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")

@@ -1,9 +1,10 @@
 //! How good the plans are that `auto` chooses: `cargo bench -p bidir --bench plans [-- SCENE]... [seconds=4] [seeds=8]`.
 //!
 //! Every plan that a scene leaves open, and `path`, `light` and `bdpt`, render it for about the same CPU time on one thread, in turn, and
-//! so does `auto`, whose pilots are within its time. Efficiency is 1/(relMSE · CPU seconds), the error trimmed by 0.1 %, against a reference
-//! in two halves, the time by its median over the seeds. The best fixed plan is chosen by one half of the seeds and scored by the other, both ways: chosen and scored by the same
-//! ones it would be the luckiest. Behind the measured figures of each plan stands what `auto`'s last pilot of the first seed predicted.
+//! so does `auto`, whose pilots are within its time. Efficiency is 1/(relMSE · CPU seconds), the error against a reference in two halves, the
+//! time by its median over the seeds; all of it twice, with the whole error and with the error trimmed by 0.1 %, which forgives fireflies.
+//! The best fixed plan is chosen by one half of the seeds and scored by the other, both ways: chosen and scored by the same ones it would be
+//! the luckiest. Behind the measured figures of each plan stands what `auto`'s last pilot of the first seed predicted.
 
 use std::{path::Path, sync::atomic::AtomicBool, time::Duration};
 
@@ -41,6 +42,8 @@ const OWN: [&str; 8] = [
 const LONG: f64 = 12.0;
 /// Plans that have less than this share of the best one's efficiency after a first look are not looked at again.
 const HOPELESS: f64 = 0.7;
+/// The errors that plans are scored by.
+const ERRORS: [&str; 2] = ["relMSE", "trimmed relMSE"];
 /// Times that seeds are drawn anew for the intervals.
 const DRAWS: u64 = 1000;
 
@@ -57,19 +60,18 @@ fn main() {
     for name in REFERENCED.into_iter().chain(OWN).filter(|name| wanted(name)) {
         found.push(Subject::new(name, seconds).measure(seconds, seeds));
     }
-    println!("\n{:<34}{:>10}{:>18}{:>12}{:>12}", "auto over", "best", "90 %", "path", "bdpt");
-    for Found { name, best, over } in &found {
-        println!("{name:<34}{:>10.3}{:>9.3} – {:.3}{:>12.2}{:>12.2}", best[1], best[0], best[2], over[0], over[1]);
+    for (by, error) in ERRORS.into_iter().enumerate() {
+        println!("\n{:<34}{:>10}{:>18}{:>12}{:>12}", format!("auto, by {error}, over"), "best", "90 %", "path", "bdpt");
+        for Found { name, scores } in &found {
+            let Score { best, over } = scores[by];
+            println!("{name:<34}{:>10.3}{:>9.3} – {:.3}{:>12.2}{:>12.2}", best[1], best[0], best[2], over[0], over[1]);
+        }
+        let mean = |of: &dyn Fn(&Score) -> f64| {
+            (found.iter().map(|one| of(&one.scores[by]).ln()).sum::<f64>() / found.len() as f64).exp()
+        };
+        let [best, path, bdpt] = [mean(&|f| f.best[1]), mean(&|f| f.over[0]), mean(&|f| f.over[1])];
+        println!("{:<34}{best:>10.3}{:>18}{path:>12.2}{bdpt:>12.2}", "geometric mean", "");
     }
-    let mean = |of: &dyn Fn(&Found) -> f64| (found.iter().map(|one| of(one).ln()).sum::<f64>() / found.len() as f64).exp();
-    println!(
-        "{:<34}{:>10.3}{:>18}{:>12.2}{:>12.2}",
-        "geometric mean",
-        mean(&|f| f.best[1]),
-        "",
-        mean(&|f| f.over[0]),
-        mean(&|f| f.over[1])
-    );
 }
 
 struct Subject {
@@ -83,16 +85,21 @@ struct Subject {
 /// What came out for a scene.
 struct Found {
     name: &'static str,
+    /// By each error.
+    scores: [Score; ERRORS.len()],
+}
+
+struct Score {
     /// `auto`'s efficiency over that of the best fixed plan: the lower end of the interval, the figure, the upper end.
     best: [f64; 3],
     /// Over that of path and of bdpt.
     over: [f64; 2],
 }
 
-/// One picture: its error and its time.
+/// One picture: its errors and its time.
 #[derive(Clone, Copy)]
 struct Run {
-    relmse: f64,
+    errors: [f64; ERRORS.len()],
     seconds: f64,
     samples: u32,
 }
@@ -162,7 +169,8 @@ impl Subject {
     fn run(&self, director: &mut impl Director, job: &Job) -> Run {
         let (image, seconds, samples) = self.render(director, job);
         let halves = [&self.halves[0], &self.halves[1]];
-        Run { relmse: against_halves(&image, halves).expect("one size").relmse_trimmed.max(f64::MIN_POSITIVE), seconds, samples }
+        let found = against_halves(&image, halves).expect("one size");
+        Run { errors: [found.relmse, found.relmse_trimmed].map(|error| error.max(f64::MIN_POSITIVE)), seconds, samples }
     }
 
     /// A fixed plan, with as many samples as take about so long at that pace.
@@ -210,11 +218,12 @@ impl Subject {
         for seed in [101, 102] {
             entrants.iter_mut().for_each(|entrant| entrant.runs.push(self.fixed(entrant, seed, seconds / 4.0)));
         }
-        let best = entrants.iter().map(|entrant| entrant.efficiency(&[0, 1])).fold(0.0, f64::max);
+        let looks = |entrant: &Entrant| [0, 1].map(|by| entrant.efficiency(by, &[0, 1]));
+        let best = entrants.iter().map(looks).fold([0.0_f64; 2], |best, look| [0, 1].map(|by| best[by].max(look[by])));
         let auto: Vec<Chosen> = (0..seeds).map(|seed| self.auto(&entrants, seed, seconds)).collect();
         let is_chosen = |stage: &Stage| auto.iter().any(|chosen| chosen.stages.iter().any(|other| same(other, stage)));
         entrants.retain(|entrant| {
-            named[..2].contains(&entrant.stage) || is_chosen(&entrant.stage) || entrant.efficiency(&[0, 1]) >= HOPELESS * best
+            named[..2].contains(&entrant.stage) || is_chosen(&entrant.stage) || looks(entrant).iter().zip(best).any(|(look, best)| *look >= HOPELESS * best)
         });
         entrants.iter_mut().for_each(|entrant| entrant.runs.clear());
         for seed in 0..seeds {
@@ -225,93 +234,103 @@ impl Subject {
 
     fn report(&self, entrants: &[Entrant], auto: &[Chosen], named: &[Stage]) -> Found {
         let all: Vec<usize> = (0..auto.len()).collect();
-        let auto = &Judged { entrants, chosen: auto, seeds: all.clone() };
+        let auto = &Judged { entrants, chosen: auto };
         let mut order: Vec<&Entrant> = entrants.iter().collect();
-        order.sort_by(|a, b| b.efficiency(&all).total_cmp(&a.efficiency(&all)));
-        println!("  {:<72}{:>12}{:>10}{:>12}{:>12}", "", "efficiency", "error·n", "cost", "predicted");
+        order.sort_by(|a, b| b.efficiency(0, &all).total_cmp(&a.efficiency(0, &all)));
+        println!("  {:<72}{:>12}{:>12}{:>9}{:>9}{:>12}", "", "efficiency", "trimmed", "error·n", "trimmed", "cost");
         let pixels = f64::from(self.description.film.crop.width) * f64::from(self.description.film.crop.height);
-        println!("  {:<72}{:>12.4e}", "auto", auto.efficiency(&all));
+        println!("  {:<72}{:>12.4e}{:>12.4e}", "auto", auto.efficiency(0, &all), auto.efficiency(1, &all));
         for entrant in order {
             let predicted =
                 auto.chosen[0].choice.as_ref().and_then(|choice| choice.candidates.iter().find(|other| same(&other.stage, &entrant.stage)));
             let of = |value: &dyn Fn(&Candidate) -> f64| predicted.map_or(f64::NAN, value);
-            let [error, time] = entrant.figures(&all);
             println!(
-                "  {:<72}{:>12.4e}{:>9.4}{:>8.0} ns{:>12.4e}{:>9.4}{:>8.0} ns",
+                "  {:<72}{:>12.4e}{:>12.4e}{:>9.4}{:>9.4}{:>9.0} ns, predicted{:>12.4e}{:>9.4}{:>9.0} ns",
                 words::stage(&entrant.stage) + if entrant.stage.next_event == 0.0 { " (no next event)" } else { "" },
-                entrant.efficiency(&all),
-                error,
-                1e9 * time / pixels,
+                entrant.efficiency(0, &all),
+                entrant.efficiency(1, &all),
+                entrant.error(0, &all),
+                entrant.error(1, &all),
+                1e9 * entrant.time() / pixels,
                 of(&|c| 1e9 / pixels * c.efficiency()),
                 of(&|c| c.error.unwrap_or(f64::INFINITY)),
                 of(&|c| c.cost),
             );
         }
-        let against =
-            |name: &Stage| auto.efficiency(&all) / entrants.iter().find(|e| same(&e.stage, name)).map_or(f64::NAN, |e| e.efficiency(&all));
-        let mut random = Random(3);
-        let halves = [all.iter().copied().step_by(2).collect::<Vec<_>>(), all.iter().copied().skip(1).step_by(2).collect()];
-        let mut drawn: Vec<f64> = (0..DRAWS)
-            .map(|_| ratio(entrants, auto, &halves, &mut |half| half.iter().map(|_| half[random.below(half.len())]).collect()))
-            .collect();
-        drawn.sort_by(f64::total_cmp);
-        let at = |share: f64| drawn[(share * (drawn.len() - 1) as f64) as usize];
-        let best = [at(0.05), ratio(entrants, auto, &halves, &mut |half| half.to_vec()), at(0.95)];
-        let over = [against(&named[0]), against(&named[1])];
-        println!(
-            "  auto over the best fixed plan {:.3} ({:.3} – {:.3}), over path {:.2}, over bdpt {:.2}",
-            best[1], best[0], best[2], over[0], over[1]
-        );
-        Found { name: self.name, best, over }
+        Found { name: self.name, scores: std::array::from_fn(|by| auto.score(by, &all, named)) }
     }
-}
-
-/// `auto` over the fixed plan that is best by one half of the seeds, scored by the other; the geometric mean of both ways.
-fn ratio(entrants: &[Entrant], auto: &Judged, halves: &[Vec<usize>; 2], draw: &mut dyn FnMut(&[usize]) -> Vec<usize>) -> f64 {
-    let mut one = |chosen_by: &[usize], scored_by: &[usize]| {
-        let best = entrants.iter().max_by(|a, b| a.efficiency(chosen_by).total_cmp(&b.efficiency(chosen_by)));
-        let seeds = draw(scored_by);
-        best.map_or(f64::NAN, |best| auto.efficiency(&seeds) / best.efficiency(&seeds))
-    };
-    (one(&halves[0], &halves[1]) * one(&halves[1], &halves[0])).sqrt()
 }
 
 /// `auto`'s pictures, each at the price of its plan.
 struct Judged<'a> {
     entrants: &'a [Entrant],
     chosen: &'a [Chosen],
-    seeds: Vec<usize>,
 }
 
 impl Judged<'_> {
+    fn score(&self, by: usize, all: &[usize], named: &[Stage]) -> Score {
+        let efficiency = self.efficiency(by, all);
+        let against = |name: &Stage| {
+            let other = self.entrants.iter().find(|entrant| same(&entrant.stage, name));
+            efficiency / other.map_or(f64::NAN, |other| other.efficiency(by, all))
+        };
+        let mut random = Random(3);
+        let halves = [0, 1].map(|first| all.iter().copied().skip(first).step_by(2).collect::<Vec<_>>());
+        let mut drawn: Vec<f64> = (0..DRAWS)
+            .map(|_| self.over_best(by, &halves, &mut |half| half.iter().map(|_| half[random.below(half.len())]).collect()))
+            .collect();
+        drawn.sort_by(f64::total_cmp);
+        let at = |share: f64| drawn[(share * (drawn.len() - 1) as f64) as usize];
+        let best = [at(0.05), self.over_best(by, &halves, &mut |half| half.to_vec()), at(0.95)];
+        let score = Score { best, over: [against(&named[0]), against(&named[1])] };
+        println!(
+            "  by {}, auto over the best fixed plan {:.3} ({:.3} – {:.3}), over path {:.2}, over bdpt {:.2}",
+            ERRORS[by], best[1], best[0], best[2], score.over[0], score.over[1]
+        );
+        score
+    }
+
+    /// `auto` over the fixed plan that is best by one half of the seeds, scored by the other; the geometric mean of both ways.
+    fn over_best(&self, by: usize, halves: &[Vec<usize>; 2], draw: &mut dyn FnMut(&[usize]) -> Vec<usize>) -> f64 {
+        let mut one = |chosen_by: &[usize], scored_by: &[usize]| {
+            let best = self.entrants.iter().max_by(|a, b| a.efficiency(by, chosen_by).total_cmp(&b.efficiency(by, chosen_by)));
+            let seeds = draw(scored_by);
+            best.map_or(f64::NAN, |best| self.efficiency(by, &seeds) / best.efficiency(by, &seeds))
+        };
+        (one(&halves[0], &halves[1]) * one(&halves[1], &halves[0])).sqrt()
+    }
+
     /// Of its plans' samples and its pilots. Samples are taken to cost what they did when the same plan was fixed: the other half of
     /// what two renders differ in would be what else the machine did.
-    fn efficiency(&self, seeds: &[usize]) -> f64 {
+    fn efficiency(&self, by: usize, seeds: &[usize]) -> f64 {
         let products = seeds.iter().map(|&seed| {
             let Chosen { run, stages, pilots, .. } = &self.chosen[seed];
             let ends = stages.iter().skip(1).map(|stage| stage.from).chain([run.samples]);
             let of = |(stage, end): (&Stage, u32)| {
                 let entrant = self.entrants.iter().find(|entrant| same(&entrant.stage, stage)).expect("a plan that was rendered");
-                f64::from(end - stage.from) * entrant.figures(&self.seeds)[1]
+                f64::from(end - stage.from) * entrant.time()
             };
-            run.relmse * (pilots + stages.iter().zip(ends).map(of).sum::<f64>())
+            run.errors[by] * (pilots + stages.iter().zip(ends).map(of).sum::<f64>())
         });
         seeds.len() as f64 / products.sum::<f64>()
     }
 }
 
 impl Entrant {
-    /// relMSE times samples in the mean, and CPU seconds of a sample in the median: these machines have other work to do.
-    fn figures(&self, seeds: &[usize]) -> [f64; 2] {
-        let error = seeds.iter().map(|&seed| self.runs[seed].relmse * f64::from(self.runs[seed].samples)).sum::<f64>() / seeds.len() as f64;
-        let mut times: Vec<f64> = seeds.iter().map(|&seed| self.runs[seed].seconds / f64::from(self.runs[seed].samples)).collect();
-        times.sort_by(f64::total_cmp);
-        [error, 0.5 * (times[(times.len() - 1) / 2] + times[times.len() / 2])]
+    /// An error times samples, in the mean.
+    fn error(&self, by: usize, seeds: &[usize]) -> f64 {
+        seeds.iter().map(|&seed| self.runs[seed].errors[by] * f64::from(self.runs[seed].samples)).sum::<f64>() / seeds.len() as f64
     }
 
-    fn efficiency(&self, seeds: &[usize]) -> f64 {
-        let [error, time] = self.figures(seeds);
-        1.0 / (error * time)
+    /// CPU seconds of a sample, in the median of all runs: these machines have other work to do.
+    fn time(&self) -> f64 {
+        let mut times: Vec<f64> = self.runs.iter().map(|run| run.seconds / f64::from(run.samples)).collect();
+        times.sort_by(f64::total_cmp);
+        0.5 * (times[(times.len() - 1) / 2] + times[times.len() / 2])
+    }
+
+    fn efficiency(&self, by: usize, seeds: &[usize]) -> f64 {
+        1.0 / (self.error(by, seeds) * self.time())
     }
 }
 

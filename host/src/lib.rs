@@ -37,4 +37,7 @@ pub mod compare;
 pub mod check;
 
 #[cfg(feature = "renderer")]
+pub mod cost;
+
+#[cfg(feature = "renderer")]
 pub mod cli;

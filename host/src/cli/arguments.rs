@@ -27,6 +27,8 @@ pub enum Command {
     Techniques(Techniques),
     /// Hold an image against a reference: relMSE, SMAPE, bias, worst block
     Compare(Compare),
+    /// Say what accuracy costs in time: a page with error against time, prices, and what each knob costs and brings
+    Cost(Cost),
     /// Test whether a BSDF or a light is right, and say in words what is wrong and where
     Check(Check),
     /// Begin a plugin, list plugins, or look into one
@@ -145,6 +147,33 @@ pub struct Compare {
     /// As JSON
     #[arg(long)]
     pub json: bool,
+}
+
+/// `bidir cost`
+#[derive(Debug, Args)]
+pub struct Cost {
+    /// A Mitsuba 3 scene
+    pub scene: PathBuf,
+    /// The folder to write to; begun there before, it goes on
+    #[arg(short, long, value_name = "DIR")]
+    pub output: PathBuf,
+    /// A picture to hold all others against; given twice, two independent halves of one. Without any, one is rendered
+    #[arg(long = "reference", value_name = "FILE")]
+    pub references: Vec<PathBuf>,
+    /// How long all of it may take
+    #[arg(long, value_name = "SECONDS", value_parser = positive, default_value_t = 120.0)]
+    pub budget: f64,
+    #[command(flatten)]
+    pub from: SceneArguments,
+    /// Of the random numbers
+    #[arg(long, value_name = "N")]
+    pub seed: Option<u64>,
+    /// Render threads; as many as the machine has, unless told
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096))]
+    pub threads: Option<u32>,
+    /// No progress
+    #[arg(long)]
+    pub quiet: bool,
 }
 
 /// `bidir check`

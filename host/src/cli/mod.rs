@@ -3,6 +3,7 @@
 mod arguments;
 mod check;
 mod compare;
+mod cost;
 mod explain;
 mod interrupt;
 mod plugin;
@@ -47,6 +48,7 @@ pub fn main() -> ExitCode {
         Command::Explain(explain) => explain::run(explain),
         Command::Techniques(techniques) => techniques::run(techniques),
         Command::Compare(compare) => compare::run(compare),
+        Command::Cost(cost) => cost::run(cost),
         Command::Check(check) => check::run(check),
         Command::Plugin(command) => plugin::run(command),
     };

@@ -41,7 +41,7 @@ pub(super) fn read(scene: Option<&Path>, from: &SceneArguments, stages: &mut Sta
         return Err(Error::in_file(folder, "there is no such folder", "name a folder of plugins"));
     }
     stages.loading(scene.unwrap_or(Path::new(WELCOME_NAME)));
-    let library = Library::with_environment(from.plugins.clone());
+    let library = library(from);
     let loaded = match scene {
         Some(path) => load::load(path, &from.defines, &library)?,
         None => load::load_str(WELCOME, Path::new(WELCOME_NAME), None, &from.defines, &library)?,
@@ -55,6 +55,11 @@ pub(super) fn read(scene: Option<&Path>, from: &SceneArguments, stages: &mut Sta
         description.integrator.max_depth = u32::try_from(depth).ok();
     }
     Ok(description)
+}
+
+/// Where plugins are found.
+pub(super) fn library(from: &SceneArguments) -> Library {
+    Library::with_environment(from.plugins.clone())
 }
 
 /// What a bad answer of a plugin does.

@@ -16,6 +16,8 @@ use crate::{
 const EPSILON: f64 = 0.01;
 /// The edge of a block, in pixels.
 const BLOCK: u32 = 16;
+/// A pixel so many times as bright as the reference, there and in the mean, is a firefly.
+const FIREFLY: f64 = 10.0;
 /// A block darker than this share of the mean counts as that bright.
 const DARK: f64 = 0.05;
 
@@ -28,6 +30,8 @@ pub struct Comparison {
     pub relmse_trimmed: f64,
     /// Mean over pixels and bands of |x − r| / (|x| + |r| + 0.01): 0 … 1.
     pub smape: f64,
+    /// The share of pixels that are more than ten times as bright as r is there and in the mean.
+    pub fireflies: f64,
     /// Mean of x over mean of r; 1 if both are 0. Not a number in JSON (null) where only r's is 0.
     pub mean_ratio: f64,
     /// `mean_ratio` − 1: above 0 if x is too bright.
@@ -77,6 +81,12 @@ pub fn against_halves(image: &Image, [a, b]: [&Image; 2]) -> Result<Comparison> 
         smape += (0..3).map(|i| (x[i] - reference[i]).abs() / (x[i].abs() + reference[i].abs() + EPSILON)).sum::<f64>();
         whole.add(x, reference);
     }
+    let brightness = |pixel: [f64; 3]| pixel.iter().sum::<f64>() / 3.0;
+    let least = whole.reference() / pixels as f64;
+    let fireflies = image.pixels.iter().zip(a.pixels.iter().zip(&b.pixels)).filter(|(x, (a, b))| {
+        brightness(finite(x)) > FIREFLY * brightness(middle(finite(a), finite(b))).max(least)
+    });
+    let fireflies = fireflies.count() as f64 / pixels as f64;
     let bad = |image: &Image| image.pixels.iter().filter(|p| !is_finite(p)).count();
     let (worst_block, block_rms) = blocks(image, [a, b], DARK * whole.reference() / pixels as f64);
     let mean_ratio = ratio(whole.image(), whole.reference());
@@ -84,6 +94,7 @@ pub fn against_halves(image: &Image, [a, b]: [&Image; 2]) -> Result<Comparison> 
         relmse: relative.iter().sum::<f64>() / pixels as f64,
         relmse_trimmed: trimmed_mean(&mut relative, TRIM),
         smape: smape / (3 * pixels) as f64,
+        fireflies,
         mean_ratio,
         bias: mean_ratio - 1.0,
         bias_rgb: std::array::from_fn(|i| ratio(whole.sums[0][i], whole.sums[1][i]) - 1.0),
@@ -100,6 +111,7 @@ impl fmt::Display for Comparison {
         let Block { x, y, deviation } = self.worst_block;
         writeln!(f, "relMSE       {:.4e} (trimmed {:.4e})", self.relmse, self.relmse_trimmed)?;
         writeln!(f, "SMAPE        {:.4e}", self.smape)?;
+        writeln!(f, "fireflies    {:.4} %", 100.0 * self.fireflies)?;
         writeln!(f, "mean bias    {:+.3} % (R {r:+.3} %, G {g:+.3} %, B {b:+.3} %)", 100.0 * self.bias)?;
         writeln!(f, "worst block  {:+.2} % at ({x}, {y}), rms {:.2} %", 100.0 * deviation, 100.0 * self.block_rms)?;
         write!(f, "non-finite   {} pixels", self.nonfinite)?;

@@ -46,7 +46,7 @@ pub(super) fn material(context: &mut Context, element: &Element) -> Result<Mater
     context.material_ids.insert(element.serial, None);
     context.materials_open += 1;
     let properties = Properties::read(element, &context.ids)?;
-    let material = match plugin::find(context, "bsdf", properties.kind(), &element.place)? {
+    let material = match plugin::find(context, "bsdf", &properties, &element.place)? {
         Some(module) => Material::Plugin(plugin::shader(context, &properties, module)?),
         None => {
             catalog::check("bsdf", properties.kind(), &element.place)?;

@@ -24,7 +24,7 @@ use crate::{
 /// The light of a shape.
 pub(super) fn area(context: &mut Context, element: &Element, shape: &Place) -> Result<ShapeLight> {
     let of = Properties::read(element, &context.ids)?;
-    let light = match plugin::find(context, "emitter", of.kind(), &element.place)? {
+    let light = match plugin::find(context, "emitter", &of, &element.place)? {
         Some(module) => {
             check_seat(&of, &module, EmitsFrom::Area)?;
             let light = ShapeLight::Plugin(plugin::shader(context, &of, module)?);
@@ -56,7 +56,7 @@ fn finish(of: Properties) -> Result<()> {
 /// A light that is not on a shape; `None` if it is one for shapes to refer to.
 pub(super) fn emitter(context: &mut Context, element: &Element) -> Result<Option<Emitter>> {
     let of = Properties::read(element, &context.ids)?;
-    let kind = match plugin::find(context, "emitter", of.kind(), &element.place)? {
+    let kind = match plugin::find(context, "emitter", &of, &element.place)? {
         Some(module) => free_plugin(context, &of, module)?,
         None => {
             if of.kind() == "area" {

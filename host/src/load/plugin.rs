@@ -14,11 +14,13 @@ use crate::{
     scene::description::{PluginShader, Texture, TexturedParameter},
 };
 
-/// The module that `<tag type="name">` means: none where that is a built-in, or nothing at all.
-pub(super) fn find(context: &Context, tag: &'static str, name: &str, place: &Place) -> Result<Option<Arc<Module>>> {
+/// The module that `<tag type="name">` means: none where that is a built-in, unless the library has one for it, or nothing at all.
+pub(super) fn find(context: &Context, tag: &'static str, of: &Properties, place: &Place) -> Result<Option<Arc<Module>>> {
+    let name = of.kind();
     let explicit = plugin::is_module(name);
     if !explicit && catalog::supported(tag).contains(&name) {
-        return Ok(None);
+        let module = context.library.instead_of(name).map_err(|error| named_here(&error, place))?;
+        return Ok(module.filter(|module| of.are_all(|property| module.manifest().params.iter().any(|known| known.name == property))));
     }
     let near = context.folders(place);
     let Some(file) = context.library.find(name, &near) else {

@@ -93,6 +93,11 @@ impl<'s> Properties<'s> {
         self.element.attribute("type").unwrap_or("")
     }
 
+    /// Whether everything inside has a name, and each is such a one.
+    pub(super) fn are_all(&self, known: impl Fn(&str) -> bool) -> bool {
+        self.entries.iter().all(|entry| entry.name.is_some_and(&known))
+    }
+
     /// Where the element stands.
     pub(super) fn place(&self) -> &'s Place {
         &self.element.place

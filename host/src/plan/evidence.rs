@@ -11,20 +11,14 @@
 //! there, and half the square of their difference is what such a run varies by. Shorter parts of the runs tell how much the
 //! samples' distance from each other helps, and by how much it will help a render of many more. Splats of all pixels' walks fall
 //! where they like: each for itself.
-//!
-//! A render's error is trimmed, and what a plan makes so seldom that it would be on fewer pixels than are trimmed is left out here too.
 
 mod moments;
 mod spread;
 
 use bidir_kernel::{Join, Technique};
 
-use self::{
-    moments::{Cut, Moments},
-    spread::Spread,
-};
+use self::{moments::Moments, spread::Spread};
 use super::Stage;
-use crate::image::trim::TRIM;
 
 /// Keeps a relative squared error finite in black pixels; relMSE's usual ε.
 const EPSILON: f64 = 0.01;
@@ -186,7 +180,7 @@ impl Evidence {
         0.0
     }
 
-    /// The relMSE, trimmed, of renders by these plans that have so many samples per pixel, times their number;
+    /// The relMSE of renders by these plans that have so many samples per pixel, times their number;
     /// infinite where a plan cannot make what the pilot saw.
     pub fn errors(&self, plans: &[(Stage, f64)]) -> Vec<f64> {
         let importance = self.importance();
@@ -209,34 +203,12 @@ impl Evidence {
             return f64::INFINITY;
         }
         let rare = moments.rarest(ENOUGH * per_sample);
-        let cut = moments.cut(TRIM / samples.max(1.0));
         let mut spread = Spread::default();
         for (block, paths) in self.places() {
             spread.place(&counts, paths, importance[block as usize], rare);
         }
         let splats: f64 = self.splats.iter().map(|(block, brought)| counts.splat(brought, importance[*block as usize], rare)).sum();
-        spread.at(samples) + splats * per_sample + moments.kept(rare, &cut) + samples * self.left_out(&counts, &cut, importance)
-    }
-
-    /// What is missing from the pixels where nothing came of what is trimmed: the mean square of it.
-    fn left_out(&self, counts: &Counts, cut: &Cut, importance: &[f64]) -> f64 {
-        let mut missing = vec![0.0; self.sizes.len()];
-        let mut paths_of = vec![0.0_f64; self.sizes.len()];
-        for (block, paths) in self.places() {
-            let at = block as usize;
-            for path in paths {
-                paths_of[at] += 1.0;
-                missing[at] += path.iter().map(|brought| cut.left_of(counts, brought, importance[at])).sum::<f64>();
-            }
-        }
-        missing.iter_mut().zip(paths_of).for_each(|(missing, paths)| *missing /= paths.max(1.0));
-        for (block, brought) in &self.splats {
-            let at = *block as usize;
-            missing[at] += cut.left_of(counts, brought, importance[at]) * self.pixels / (self.samples() as f64 * self.sizes[at]);
-        }
-        let weighed =
-            missing.iter().zip(importance).zip(&self.sizes).map(|((missing, importance), size)| missing * missing * importance * size);
-        weighed.sum::<f64>() / self.pixels
+        spread.at(samples) + splats * per_sample + moments.squares(rare)
     }
 }
 
@@ -392,15 +364,11 @@ mod tests {
         }
         let counts = |light_hit: f64, lens_splat: f64| Stage::of(&Techniques { light_hit, lens_splat, ..Techniques::NONE });
         let plans = [counts(1.0, 1.0), counts(1.0, 0.0), counts(0.0, 0.0), counts(1.0, 2.0)];
-        // So many samples that nothing is trimmed.
-        let errors = evidence.errors(&plans.map(|stage| (stage, 1e9)));
+        let errors = evidence.errors(&plans.map(|stage| (stage, 64.0)));
         assert!((errors[1] / errors[0] - 100.0).abs() < 1e-6, "{errors:?}");
         assert!(errors[2].is_infinite());
         // Two splats of each walk's, of which the pilot saw none that the camera found.
         assert!((errors[0] / errors[3] - 1.99 * 1.99 / 2.0).abs() < 1e-6, "{errors:?}");
-        // So few that the rare path would be on less than a thousandth of the pixels: what is missing is its mean, everywhere.
-        let few = evidence.errors(&[(counts(1.0, 0.0), 1.0)])[0];
-        assert!((few - errors[0] / 20.0).abs() < 1e-9, "{few} {errors:?}");
     }
 
     #[test]

@@ -24,6 +24,7 @@ pub struct Library {
     folders: Vec<PathBuf>,
     engine: OnceCell<Engine>,
     loaded: RefCell<HashMap<PathBuf, Arc<Module>>>,
+    instead: &'static [(&'static str, &'static [u8])],
 }
 
 impl Library {
@@ -38,6 +39,20 @@ impl Library {
             folders.extend(std::env::split_paths(&named).filter(|folder| !folder.as_os_str().is_empty()));
         }
         Self::new(folders)
+    }
+
+    /// With modules that stand for built-ins of their names, wherever they know all that a scene says of one.
+    pub fn instead_of_built_ins(self, modules: &'static [(&'static str, &'static [u8])]) -> Self {
+        Self { instead: modules, ..self }
+    }
+
+    /// The module that stands for a built-in.
+    ///
+    /// # Errors
+    /// As [`Module::from_bytes`].
+    pub fn instead_of(&self, kind: &str) -> Result<Option<Arc<Module>>> {
+        let Some((name, bytes)) = self.instead.iter().find(|(name, _)| *name == kind) else { return Ok(None) };
+        self.once(Path::new(name), |engine| Module::from_bytes(engine, Path::new(name), bytes, None)).map(Some)
     }
 
     /// The file of a plugin of type `kind`, as a scene writes it: in one of the folders `near`, or in those of the library.
@@ -63,6 +78,10 @@ impl Library {
     /// # Errors
     /// As [`Module::load`].
     pub fn load(&self, file: &Path) -> Result<Arc<Module>> {
+        self.once(file, |engine| Module::load(engine, file))
+    }
+
+    fn once(&self, file: &Path, load: impl FnOnce(&Engine) -> Result<Module>) -> Result<Arc<Module>> {
         if let Some(known) = self.loaded.borrow().get(file) {
             return Ok(Arc::clone(known));
         }
@@ -73,7 +92,7 @@ impl Library {
                 self.engine.get_or_init(|| engine)
             }
         };
-        let module = Arc::new(Module::load(engine, file)?);
+        let module = Arc::new(load(engine)?);
         self.loaded.borrow_mut().insert(file.to_owned(), Arc::clone(&module));
         Ok(module)
     }

@@ -1,0 +1,127 @@
+//! `bidir cost`.
+
+use std::{
+    fmt::Write,
+    fs,
+    io::{self, IsTerminal},
+    path::Path,
+    time::Duration,
+};
+
+use sha2::{Digest, Sha256};
+
+use crate::{
+    check::builtin,
+    cli::{
+        Outcome,
+        arguments::{Cost, SceneArguments},
+        interrupt,
+        progress::Stages,
+        render::{library, read, strictness, thread_count, verbosity},
+    },
+    cost::{self, Settings, curve, page, subject::Subject},
+    error::{Error, Result},
+    load,
+    plan::effects::Effects,
+    scene::{
+        Scene,
+        description::{Description, EmitterKind, Material, ShapeLight},
+    },
+};
+
+pub(super) fn run(arguments: &Cost) -> Result<Outcome> {
+    let folder = &arguments.output;
+    if folder.exists() && !folder.is_dir() {
+        return Err(Error::in_file(folder, "this is a file, and the report needs a folder", "name a folder, new or old"));
+    }
+    let mut stages = Stages::new(verbosity(arguments.quiet));
+    let description = read(Some(&arguments.scene), &arguments.from, &mut stages)?;
+    fs::create_dir_all(folder)
+        .map_err(|error| Error::in_file(folder, format!("the folder cannot be made: {error}"), "name one where you may write"))?;
+    stages.building(&description);
+    let scene = Scene::new(&description)?;
+    let sandboxed = sandboxed(&arguments.scene, &arguments.from, modules(&description));
+    stages.built();
+    let subject = Subject {
+        name: arguments.scene.display().to_string(),
+        effects: Effects::of(&description, &scene),
+        threads: thread_count(arguments.threads),
+        seed: arguments.seed.unwrap_or(description.seed),
+        strictness: strictness(&arguments.from),
+        description,
+        scene,
+    };
+    let settings = Settings {
+        folder: folder.clone(),
+        budget: Duration::from_secs_f64(arguments.budget.min(1e9)),
+        references: arguments.references.clone(),
+        digest: digest(&arguments.scene, &arguments.from)?,
+    };
+    let interrupt = interrupt::flag();
+    let mut progress = |what: &str, share: f64| {
+        if !arguments.quiet {
+            say(what, share);
+        }
+    };
+    let report = cost::measure(&subject, sandboxed, &settings, &interrupt, &mut progress)?;
+    page::write(folder, &report)?;
+    if !arguments.quiet {
+        if io::stderr().is_terminal() {
+            eprintln!();
+        }
+        for prices in &report.prices {
+            let words = prices.targets.iter().filter_map(|price| {
+                let about = if price.how == curve::How::Measured { "" } else { "about " };
+                Some(format!("{:.0e} in {about}{}", price.relmse, curve::seconds(price.cpu?)))
+            });
+            println!("{:<5} relMSE {}", prices.method, words.collect::<Vec<_>>().join(", "));
+        }
+        let rest = if report.interrupted { "; not all of it, run again to go on" } else { "" };
+        println!("{:.0} s{rest}: {}", report.spent, folder.join(page::NAME).display());
+    }
+    Ok(if interrupt.load(std::sync::atomic::Ordering::Relaxed) { Outcome::Interrupted } else { Outcome::Done })
+}
+
+/// One line that is written over on a terminal, or a line each.
+fn say(what: &str, share: f64) {
+    let percent = 100.0 * share.min(1.0);
+    if io::stderr().is_terminal() {
+        eprint!("\r\x1b[2K{percent:3.0} % {what}");
+    } else {
+        eprintln!("{percent:3.0} % {what}");
+    }
+}
+
+/// The scene with modules for its built-in shaders; `None` if that makes no more than it has anyway.
+fn sandboxed(path: &Path, from: &SceneArguments, own: usize) -> Option<(Description, Scene)> {
+    let library = library(from).instead_of_built_ins(&builtin::MODULES);
+    let mut description = load::load(path, &from.defines, &library).ok()?.description;
+    if let Some(depth) = from.max_depth {
+        description.integrator.max_depth = u32::try_from(depth).ok();
+    }
+    if modules(&description) <= own {
+        return None;
+    }
+    let scene = Scene::new(&description).ok()?;
+    Some((description, scene))
+}
+
+/// How many shaders are modules.
+fn modules(description: &Description) -> usize {
+    let is_module = |kind: &EmitterKind| matches!(kind, EmitterKind::PluginPoint { .. } | EmitterKind::PluginEnvironment { .. });
+    description.materials.iter().filter(|material| matches!(material, Material::Plugin(_))).count()
+        + description.all_shapes().filter(|shape| matches!(shape.light, Some(ShapeLight::Plugin(_)))).count()
+        + description.emitters.iter().filter(|emitter| is_module(&emitter.kind)).count()
+}
+
+/// Of the scene's text and what is defined in it.
+fn digest(path: &Path, from: &SceneArguments) -> Result<String> {
+    let bytes = fs::read(path).map_err(|error| Error::in_file(path, format!("it cannot be read: {error}"), "name a scene"))?;
+    let mut hash = Sha256::new();
+    hash.update(bytes);
+    hash.update(format!("{:?} {:?} {:?} {}", from.defines, from.max_depth, from.plugins, from.strict));
+    Ok(hash.finalize().iter().fold(String::new(), |mut text, byte| {
+        let _ = write!(text, "{byte:02x}");
+        text
+    }))
+}

@@ -1,0 +1,194 @@
+//! What pictures are held against: two independent halves.
+
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use crate::{
+    compare::against_halves,
+    error::{Error, Result},
+    image::{
+        Image,
+        read::{Encoding, read},
+    },
+};
+
+/// Keeps a relative squared error finite in black pixels; relMSE's usual ε.
+const EPSILON: f64 = 0.01;
+
+/// The edge of a block, in pixels: the parts of a picture that are taken to be independent of each other.
+const BLOCK: u32 = 16;
+
+/// How far a picture is from a reference. Its own noise is in the errors, the reference's is not (but in SMAPE).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Errors {
+    /// Mean of (x − a)(x − b) / (r² + 0.01).
+    pub relmse: f64,
+    /// The same without the 0.1 % of pixels with the largest values.
+    pub trimmed: f64,
+    /// Mean of |x − r| / (|x| + |r| + 0.01).
+    pub smape: f64,
+    /// Mean of x over mean of r, less 1.
+    pub bias: f64,
+    /// The share of pixels more than ten times as bright as r is there and in the mean.
+    pub fireflies: f64,
+}
+
+/// A reference r = (a + b)/2.
+#[derive(Clone, Debug)]
+pub struct Reference {
+    halves: [Image; 2],
+    /// Whether there are two halves in truth.
+    independent: bool,
+    /// Whose it is, and how long it took.
+    pub words: String,
+    /// Whether it was given.
+    pub given: bool,
+}
+
+impl Reference {
+    /// Two independent renders of equally many samples.
+    pub fn rendered(halves: [Image; 2], words: String) -> Self {
+        Self { halves, independent: true, words, given: false }
+    }
+
+    /// One file, whose own noise then counts as every picture's error; or two independent halves.
+    ///
+    /// # Errors
+    /// If a file cannot be read, or they are of two sizes.
+    pub fn given(files: &[PathBuf]) -> Result<Self> {
+        let names = files.iter().map(|file| file.display().to_string()).collect::<Vec<_>>().join(", ");
+        match <[Image; 1]>::try_from(files.iter().map(|file| picture(file)).collect::<Result<Vec<_>>>()?) {
+            Ok([one]) => {
+                let words = format!("{names}, as given; its own noise is taken for everybody's error");
+                Ok(Self { halves: [one.clone(), one], independent: false, words, given: true })
+            }
+            Err(images) => match <[Image; 2]>::try_from(images) {
+                Ok([a, b]) => {
+                    if (a.width, a.height) != (b.width, b.height) {
+                        return Err(Error::in_file(&files[1], "its size is not that of the other half", "give two halves of one picture"));
+                    }
+                    Ok(Self { halves: [a, b], independent: true, words: format!("{names}, two halves as given"), given: true })
+                }
+                Err(images) => {
+                    let thing = format!("{} references are given", images.len());
+                    Err(Error::new(thing, "give one picture, or the two independent halves of one"))
+                }
+            },
+        }
+    }
+
+    /// In pixels.
+    pub fn size(&self) -> [u32; 2] {
+        [self.halves[0].width, self.halves[0].height]
+    }
+
+    /// a and b.
+    pub fn halves(&self) -> &[Image; 2] {
+        &self.halves
+    }
+
+    /// r.
+    pub fn image(&self) -> Image {
+        let [a, b] = &self.halves;
+        let middle = |(a, b): (&[f32; 3], &[f32; 3])| std::array::from_fn(|i| 0.5 * (a[i] + b[i]));
+        Image { pixels: a.pixels.iter().zip(&b.pixels).map(middle).collect(), ..*a }
+    }
+
+    /// The errors of a picture of the same size.
+    pub fn errors(&self, image: &Image) -> Result<Errors> {
+        let found = against_halves(image, [&self.halves[0], &self.halves[1]])?;
+        let (relmse, trimmed, smape, fireflies) = (found.relmse, found.relmse_trimmed, found.smape, found.fireflies);
+        Ok(Errors { relmse, trimmed, smape, bias: found.bias, fireflies })
+    }
+
+    /// r's own relMSE: (a − b)/2 is as far from 0 as r is from the truth. `None` where there are no two halves.
+    pub fn relmse(&self) -> Option<f64> {
+        let of = |(a, b): (&[f32; 3], &[f32; 3])| {
+            let part = |i: usize| {
+                let (a, b) = (f64::from(a[i]), f64::from(b[i]));
+                let (difference, middle) = (0.5 * (a - b), 0.5 * (a + b));
+                difference * difference / (middle * middle + EPSILON)
+            };
+            (part(0) + part(1) + part(2)) / 3.0
+        };
+        let [a, b] = &self.halves;
+        let sum: f64 = a.pixels.iter().zip(&b.pixels).map(of).sum();
+        (self.independent && !a.pixels.is_empty()).then(|| sum / a.pixels.len() as f64)
+    }
+
+    /// The standard deviation of r's mean, as a share of it, from blocks of (a − b)/2, taken to be independent. 0 where there are no two
+    /// halves: what is not known is not in an interval.
+    pub fn doubt(&self) -> f64 {
+        if !self.independent {
+            return 0.0;
+        }
+        let [a, b] = &self.halves;
+        let columns = a.width.div_ceil(BLOCK);
+        let mut blocks = vec![0.0; (columns * a.height.div_ceil(BLOCK)) as usize];
+        let mut sum = 0.0;
+        for (i, (a_pixel, b_pixel)) in a.pixels.iter().zip(&b.pixels).enumerate() {
+            let (x, y) = (i as u32 % a.width, i as u32 / a.width);
+            let block = &mut blocks[(y / BLOCK * columns + x / BLOCK) as usize];
+            for band in 0..3 {
+                let (a, b) = (f64::from(a_pixel[band]), f64::from(b_pixel[band]));
+                *block += 0.5 * (a - b);
+                sum += 0.5 * (a + b);
+            }
+        }
+        let squares: f64 = blocks.iter().map(|block: &f64| block * block).sum();
+        if sum > 0.0 { squares.sqrt() / sum } else { 0.0 }
+    }
+}
+
+/// A picture from its file.
+pub(super) fn picture(file: &Path) -> Result<Image> {
+    let pixels = read(file, Encoding::Linear)?;
+    Ok(Image { width: pixels.width, height: pixels.height, pixels: pixels.values.into_iter().map(|value| value.0).collect() })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn flat(value: f32) -> Image {
+        Image { width: 32, height: 32, pixels: vec![[value; 3]; 1024] }
+    }
+
+    /// A checkered half: the noise of halves is no error of a picture that lies in their middle.
+    #[test]
+    fn the_noise_of_halves_is_not_in_the_error_of_a_picture() {
+        let noisy = |sign: f32| {
+            let mut image = flat(1.0);
+            image.pixels.iter_mut().enumerate().for_each(|(i, pixel)| *pixel = [1.0 + sign * if i % 2 == 0 { 0.1 } else { -0.1 }; 3]);
+            image
+        };
+        let reference = Reference::rendered([noisy(1.0), flat(1.0)], String::new());
+        let errors = reference.errors(&flat(1.2)).unwrap();
+        assert!((errors.relmse - 0.04 / 1.01).abs() < 1e-3, "{errors:?}");
+        assert!((errors.bias - 0.2).abs() < 1e-6 && errors.fireflies == 0.0);
+        assert!((reference.relmse().unwrap() - 0.0025 / 1.01).abs() < 1e-5);
+        assert!(reference.doubt() < 1e-6);
+        assert_eq!(Reference { independent: false, ..reference }.relmse(), None);
+    }
+
+    #[test]
+    fn doubt_is_of_the_mean() {
+        // Four blocks, each half of which is ±0.1: (0.1 · 256 · 3 · √4) / (1 · 1024 · 3).
+        let (mut a, mut b) = (flat(1.0), flat(1.0));
+        for (i, (a, b)) in a.pixels.iter_mut().zip(&mut b.pixels).enumerate() {
+            let sign = if (i % 32 < 16) == (i / 32 < 16) { 0.1 } else { -0.1 };
+            (*a, *b) = ([1.0 + sign; 3], [1.0 - sign; 3]);
+        }
+        let doubt = Reference::rendered([a, b], String::new()).doubt();
+        assert!((doubt - 0.05).abs() < 1e-4, "{doubt}");
+    }
+
+    #[test]
+    fn a_firefly_is_counted_and_a_bright_lamp_is_not() {
+        let (mut reference, mut image) = (flat(1.0), flat(1.0));
+        (reference.pixels[5], image.pixels[5], image.pixels[9]) = ([50.0; 3], [60.0; 3], [20.0; 3]);
+        let errors = Reference::rendered([reference.clone(), reference], String::new()).errors(&image).unwrap();
+        assert_eq!(errors.fireflies, 1.0 / 1024.0);
+    }
+}

@@ -1,0 +1,162 @@
+//! Where the time of a render goes: its parts, each measured alone on the same random numbers, so that their rays must add up to the
+//! whole's exactly.
+
+use std::sync::{Arc, atomic::AtomicBool};
+
+use bidir_kernel::{Contribution, Film as _, Spectrum, Technique, Techniques, Vec2};
+use cpu_time::{ProcessTime, ThreadTime};
+use serde::Serialize;
+
+use super::subject::Subject;
+use crate::{
+    error::Result,
+    film::{Exposure, Film, Store},
+    plan::{Stage, choice::Costs, words},
+    render::{self, Always, Auto, Target},
+    scene::view::RayCounts,
+};
+
+/// Renders of each part, of which the fastest counts: what else the machine does only ever adds.
+const ROUNDS: u32 = 3;
+
+/// Where time went.
+#[derive(Clone, Debug, Serialize)]
+pub struct Spent {
+    /// What was rendered.
+    pub words: String,
+    /// Its parts, in CPU seconds; a part that cannot be told apart is in the one whose name it stands in.
+    pub parts: Vec<Part>,
+    /// Rays of the whole, and of all its parts.
+    pub rays: Rays,
+}
+
+/// A part of a render.
+#[derive(Clone, Debug, Serialize)]
+pub struct Part {
+    /// Which.
+    pub name: &'static str,
+    /// CPU seconds.
+    pub seconds: f64,
+    /// Its own rays.
+    pub rays: Option<RayCounts>,
+}
+
+/// Rays of a render.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Rays {
+    /// Of the whole.
+    pub counted: RayCounts,
+    /// Of its parts, each rendered alone.
+    pub predicted: RayCounts,
+}
+
+/// What a stage's samples cost, and their rays.
+#[derive(Clone, Copy, Debug, Default)]
+struct Cost {
+    seconds: f64,
+    rays: RayCounts,
+}
+
+/// Takes a plan's render apart: so many samples per pixel, with a pilot such as `auto` would send ahead.
+///
+/// # Errors
+/// If the film cannot be made.
+pub fn spent(subject: &Subject, stage: &Stage, samples: u32, interrupt: &Arc<AtomicBool>) -> Result<Spent> {
+    let techniques = stage.techniques();
+    let Techniques { light_hit, next_event, connection, lens_splat, lens_hit } = techniques;
+    let of = |techniques: Techniques| {
+        let some = techniques.camera_walk() || techniques.light_walk();
+        if some { cost(subject, &Stage::of(&techniques), samples, interrupt) } else { Ok(Cost::default()) }
+    };
+    let whole = of(techniques)?;
+    let bare = of(Techniques { light_hit, ..Techniques::NONE })?;
+    let path = of(Techniques { light_hit, next_event, ..Techniques::NONE })?;
+    let shown = of(Techniques { lens_splat, lens_hit, ..Techniques::NONE })?;
+    let walk = of(Techniques { lens_hit, ..Techniques::NONE })?;
+    let unconnected = of(Techniques { connection: 0.0, ..techniques })?;
+    let connected = of(Techniques { connection, ..Techniques::NONE })?;
+    let film = film(subject, samples)?;
+    let (pilot, plugins) = pilot(subject, stage, samples);
+
+    let rays = |closest: u64, any: u64| RayCounts { closest, any };
+    let mut parts = Vec::new();
+    let mut part = |name, seconds: f64, rays: RayCounts| parts.push(Part { name, seconds: seconds.max(0.0), rays: Some(rays) });
+    if techniques.camera_walk() {
+        let calls = plugins.camera_path.min(path.seconds);
+        let left = 1.0 - calls / path.seconds.max(f64::MIN_POSITIVE);
+        let alone = if next_event > 0.0 { bare.seconds.min(path.seconds) } else { path.seconds };
+        part("camera walk", left * alone - film, rays(path.rays.closest, 0));
+        part("next event", left * (path.seconds - alone), rays(0, path.rays.any));
+    }
+    if techniques.light_walk() {
+        let left = 1.0 - plugins.light_path.min(shown.seconds) / shown.seconds.max(f64::MIN_POSITIVE);
+        // Where no lens can be landed on, nobody walks for that alone.
+        let alone = if walk.rays.closest > 0 { walk.seconds.min(shown.seconds) } else { shown.seconds };
+        part("light walk", left * alone, rays(shown.rays.closest, 0));
+        part("lens splat", left * (shown.seconds - alone), rays(0, shown.rays.any));
+    }
+    if connection > 0.0 {
+        part("connections", whole.seconds - unconnected.seconds - plugins.connections, rays(0, connected.rays.any));
+    }
+    let calls = plugins.camera_path + plugins.light_path + plugins.connections;
+    let rayless = [("plugins", calls), ("film", film), ("plan", pilot)];
+    parts.extend(rayless.map(|(name, seconds)| Part { name, seconds, rays: None }));
+    parts.retain(|part| part.seconds > 0.0 || part.rays.is_some_and(|rays| rays != RayCounts::default()));
+    let predicted = rays(path.rays.closest + shown.rays.closest, path.rays.any + shown.rays.any + connected.rays.any);
+    Ok(Spent {
+        words: format!("{}, {samples} samples per pixel", words::stage(stage)),
+        parts,
+        rays: Rays { counted: whole.rays, predicted },
+    })
+}
+
+/// A render of some techniques: the same numbers each time, so the same rays.
+fn cost(subject: &Subject, stage: &Stage, samples: u32, interrupt: &Arc<AtomicBool>) -> Result<Cost> {
+    let manner = subject.manner(stage);
+    let mut best = Cost { seconds: f64::INFINITY, ..Cost::default() };
+    for _ in 0..ROUNDS {
+        let film = Film::new(&subject.description.film)?;
+        let job = subject.job(&manner, 0, Target::Samples(samples));
+        let status = render::directed(&subject.scene, &film, &job, &mut Always, interrupt, |_| None);
+        best = Cost { seconds: best.seconds.min(status.cpu.as_secs_f64()), rays: status.rays };
+    }
+    Ok(best)
+}
+
+/// CPU seconds of what the film does with so many samples that all bring something.
+fn film(subject: &Subject, samples: u32) -> Result<f64> {
+    let mut best = f64::INFINITY;
+    for _ in 0..ROUNDS {
+        let film = Film::new(&subject.description.film)?;
+        let clock = ThreadTime::now();
+        while let Some(mut buffer) = film.claim(samples) {
+            for (x, y) in film.pixels(&buffer.unit()) {
+                buffer.begin(Vec2::new(x as f32 + 0.25, y as f32 + 0.75));
+                buffer.add(Contribution { value: Spectrum::ONE, weight: 1.0, technique: Technique { s: 0, t: 2 } });
+                buffer.end();
+            }
+            film.commit(buffer);
+        }
+        best = best.min(clock.elapsed().as_secs_f64());
+    }
+    Ok(best)
+}
+
+/// CPU seconds of a pilot, and of plugins' calls in the parts of a render of that stage.
+fn pilot(subject: &Subject, stage: &Stage, samples: u32) -> (f64, Costs) {
+    let mut auto = Auto::new(&subject.description, &subject.effects);
+    let clock = ProcessTime::now();
+    auto.begin(&subject.scene, &subject.job(&subject.manner(stage), 0, Target::Samples(samples)));
+    let pilot = clock.elapsed().as_secs_f64();
+    let crop = subject.description.film.crop;
+    let all = 1e-9 * f64::from(samples) * f64::from(crop.width) * f64::from(crop.height);
+    let techniques = stage.techniques();
+    let mut plugins = Costs::default();
+    for plugin in auto.choice().iter().flat_map(|choice| &choice.plugins) {
+        let each = all * plugin.nanoseconds;
+        plugins.camera_path += each * if techniques.camera_walk() { plugin.calls_in.camera_path } else { 0.0 };
+        plugins.light_path += each * plugin.calls_in.light_path * techniques.light_walks();
+        plugins.connections += each * plugin.calls_in.connections * techniques.connection;
+    }
+    (pilot, plugins)
+}
