@@ -7,6 +7,7 @@
 mod agreement;
 mod check;
 mod corpus;
+mod cost;
 mod depth;
 mod furnace;
 mod hard_cases;

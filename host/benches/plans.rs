@@ -66,9 +66,7 @@ fn main() {
             let Score { best, over } = scores[by];
             println!("{name:<34}{:>10.3}{:>9.3} – {:.3}{:>12.2}{:>12.2}", best[1], best[0], best[2], over[0], over[1]);
         }
-        let mean = |of: &dyn Fn(&Score) -> f64| {
-            (found.iter().map(|one| of(&one.scores[by]).ln()).sum::<f64>() / found.len() as f64).exp()
-        };
+        let mean = |of: &dyn Fn(&Score) -> f64| (found.iter().map(|one| of(&one.scores[by]).ln()).sum::<f64>() / found.len() as f64).exp();
         let [best, path, bdpt] = [mean(&|f| f.best[1]), mean(&|f| f.over[0]), mean(&|f| f.over[1])];
         println!("{:<34}{best:>10.3}{:>18}{path:>12.2}{bdpt:>12.2}", "geometric mean", "");
     }
@@ -223,7 +221,9 @@ impl Subject {
         let auto: Vec<Chosen> = (0..seeds).map(|seed| self.auto(&entrants, seed, seconds)).collect();
         let is_chosen = |stage: &Stage| auto.iter().any(|chosen| chosen.stages.iter().any(|other| same(other, stage)));
         entrants.retain(|entrant| {
-            named[..2].contains(&entrant.stage) || is_chosen(&entrant.stage) || looks(entrant).iter().zip(best).any(|(look, best)| *look >= HOPELESS * best)
+            named[..2].contains(&entrant.stage)
+                || is_chosen(&entrant.stage)
+                || looks(entrant).iter().zip(best).any(|(look, best)| *look >= HOPELESS * best)
         });
         entrants.iter_mut().for_each(|entrant| entrant.runs.clear());
         for seed in 0..seeds {

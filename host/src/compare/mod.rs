@@ -83,9 +83,11 @@ pub fn against_halves(image: &Image, [a, b]: [&Image; 2]) -> Result<Comparison> 
     }
     let brightness = |pixel: [f64; 3]| pixel.iter().sum::<f64>() / 3.0;
     let least = whole.reference() / pixels as f64;
-    let fireflies = image.pixels.iter().zip(a.pixels.iter().zip(&b.pixels)).filter(|(x, (a, b))| {
-        brightness(finite(x)) > FIREFLY * brightness(middle(finite(a), finite(b))).max(least)
-    });
+    let fireflies = image
+        .pixels
+        .iter()
+        .zip(a.pixels.iter().zip(&b.pixels))
+        .filter(|(x, (a, b))| brightness(finite(x)) > FIREFLY * brightness(middle(finite(a), finite(b))).max(least));
     let fireflies = fireflies.count() as f64 / pixels as f64;
     let bad = |image: &Image| image.pixels.iter().filter(|p| !is_finite(p)).count();
     let (worst_block, block_rms) = blocks(image, [a, b], DARK * whole.reference() / pixels as f64);

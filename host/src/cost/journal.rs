@@ -8,7 +8,7 @@ use std::{
 
 use serde::{Deserialize, Serialize};
 
-use super::subject::Snapshot;
+use super::{spent::Spent, subject::Snapshot, techniques::Techniques};
 use crate::{
     error::{Error, Result},
     partial::Partial,
@@ -79,6 +79,10 @@ pub enum Entry {
         /// Its errors at the end, seed by seed.
         runs: Vec<Snapshot>,
     },
+    /// Where time went.
+    Time(Spent),
+    /// The techniques apart, if there is room for them.
+    Techniques(Option<Techniques>),
     /// So many seconds were spent in all.
     Spent(f64),
 }

@@ -11,7 +11,7 @@ use super::{
 use crate::{
     error::Result,
     plan::{Stage, joins::possible, words},
-    rays::Triangles,
+    rays::{Quality, Triangles},
     render::Numbers,
     scene::{
         Scene,
@@ -76,11 +76,12 @@ enum Change {
     Numbers(Numbers),
     Filter(Filter),
     Triangles(Triangles),
+    Quality(Quality),
     Scene(Box<(Description, Scene)>),
 }
 
 /// What knobs do.
-const WORDS: [(&str, &str); 9] = [
+const WORDS: [(&str, &str); 10] = [
     ("depth", "the longest path, in segments"),
     ("roulette", "the length from which paths may end by chance"),
     ("next event", "light points per vertex of a camera path"),
@@ -90,6 +91,7 @@ const WORDS: [(&str, &str); 9] = [
     ("sampler", "random numbers: points that keep their distance, or each for itself"),
     ("filter", "how samples make pixels"),
     ("triangles", "rays that never slip between neighbours, or may"),
+    ("tree", "how carefully the tree is built that rays descend; building is not in the time"),
 ];
 
 /// Everything that can be turned, in the order in which it is shown; `sandboxed` is the scene with modules for its built-in shaders,
@@ -157,6 +159,8 @@ pub fn turns(subject: &Subject, base: &Stage, sandboxed: Option<(Description, Sc
     }
     all.push(same("triangles", "watertight", true, Change::Nothing));
     all.push(same("triangles", "fast", false, Change::Triangles(Triangles::Fast)));
+    all.push(same("tree", "high", true, Change::Nothing));
+    all.push(same("tree", "low", false, Change::Quality(Quality::Low)));
     // What the scene has no use for is the base again, or nothing at all.
     all.retain(|turn| turn.base || turn.is_a_change(base));
     let alone = |knob: &str| all.iter().filter(|turn| turn.knob == knob).count() < 2;
@@ -194,6 +198,10 @@ impl Turn {
                 let scene = Scene::new(&subject.description)?.with_triangles(*triangles);
                 render(&Manner { scene: &scene, ..manner })
             }
+            Change::Quality(quality) => {
+                let scene = Scene::with_quality(&subject.description, *quality)?;
+                render(&Manner { scene: &scene, ..manner })
+            }
             Change::Scene(other) => render(&Manner { scene: &other.1, description: &other.0, ..manner }),
         }
     }
@@ -222,8 +230,7 @@ pub fn setting(turn: &Turn, runs: &[Snapshot], doubt: f64) -> Option<Setting> {
 pub fn together(settings: Vec<(&'static str, Setting)>) -> Vec<Knob> {
     let all: Vec<[f64; 2]> = settings.iter().map(|(_, s)| [s.relmse, s.cpu]).collect();
     let beaten = |[error, time]: [f64; 2]| all.iter().any(|[e, t]| *e <= error && *t <= time && (*e < error || *t < time));
-    let mut knobs: Vec<Knob> =
-        WORDS.iter().map(|(knob, words)| Knob { knob, words, settings: Vec::new() }).collect();
+    let mut knobs: Vec<Knob> = WORDS.iter().map(|(knob, words)| Knob { knob, words, settings: Vec::new() }).collect();
     for ((knob, setting), figures) in settings.into_iter().zip(all.clone()) {
         let pareto = !beaten(figures);
         if let Some(of) = knobs.iter_mut().find(|other| other.knob == knob) {

@@ -61,6 +61,8 @@ const SEEDS: [f64; 2] = [2.0, 4.0];
 const SAMPLES: f64 = 8.0;
 /// Renders of each setting of a knob.
 const SETTING_SEEDS: u64 = 4;
+/// A setting takes about so many times as long as the base, in the mean.
+const DEARER: f64 = 1.7;
 /// Seeds of the reference's halves, far from those of what is measured.
 const HALVES: u64 = 1 << 40;
 
@@ -241,15 +243,9 @@ impl Work<'_> {
         report.methods = self.methods(&reference, report.seeds, slice / report.seeds as f64)?;
         report.prices = report.methods.iter().map(Method::prices).collect();
         report.crossings = curve::crossings(&report.methods);
+        report.time = self.time(&stage, pace)?;
+        report.pyramid = self.techniques(pace)?;
         report.knobs = self.knobs(&reference, &stage, sandboxed)?;
-        if self.begin("where the time goes", 0.0) {
-            let samples = (APART * self.budget() * self.subject.threads as f64 / (24.0 * pace)).clamp(1.0, 4096.0) as u32;
-            report.time = Some(spent::spent(self.subject, &stage, samples, self.interrupt)?);
-        }
-        if self.begin("the techniques apart", 0.0) {
-            let samples = (APART * self.budget() / (2.0 * pace)).clamp(1.0, 256.0) as u32;
-            report.pyramid = techniques::apart(self.subject, samples, self.interrupt);
-        }
         report.images = self.images(&report.methods, &reference);
         report.interrupted = self.cut_off;
         report.spent = self.spent();
@@ -347,7 +343,9 @@ impl Work<'_> {
         for seed in 0..seeds {
             for name in METHOD_NAMES {
                 let known = self.of_method(name.name());
-                if known.iter().any(|(other, ..)| *other == seed) || !self.begin(&format!("{}, render {} of {seeds}", name.name(), seed + 1), slice) {
+                if known.iter().any(|(other, ..)| *other == seed)
+                    || !self.begin(&format!("{}, render {} of {seeds}", name.name(), seed + 1), slice)
+                {
                     continue;
                 }
                 // All of a method's have as many samples as the first had time for.
@@ -413,6 +411,36 @@ impl Work<'_> {
         self.journal.entries().iter().filter_map(of).collect()
     }
 
+    /// A render of the plan, taken apart.
+    fn time(&mut self, stage: &Stage, pace: f64) -> Result<Option<Spent>> {
+        let known = self.journal.entries().iter().find_map(|entry| if let Entry::Time(time) = entry { Some(time.clone()) } else { None });
+        if known.is_some() || !self.begin("where the time goes", 0.0) {
+            return Ok(known);
+        }
+        let samples = (APART * self.budget() / (spent::RENDERS * pace)).clamp(1.0, 4096.0) as u32;
+        let time = spent::spent(self.subject, stage, samples, self.interrupt)?;
+        if self.interrupt.load(Ordering::Relaxed) {
+            return Ok(None);
+        }
+        self.journal.add(Entry::Time(time.clone()))?;
+        Ok(Some(time))
+    }
+
+    fn techniques(&mut self, pace: f64) -> Result<Option<Techniques>> {
+        let known =
+            self.journal.entries().iter().find_map(|entry| if let Entry::Techniques(all) = entry { Some(all.clone()) } else { None });
+        if let Some(known) = known {
+            return Ok(known);
+        }
+        if !self.begin("the techniques apart", 0.0) {
+            return Ok(None);
+        }
+        let samples = (APART * self.budget() / pace).clamp(1.0, 256.0) as u32;
+        let all = techniques::apart(self.subject, samples, self.interrupt);
+        self.journal.add(Entry::Techniques(all.clone()))?;
+        Ok(all)
+    }
+
     /// Every setting of every knob, each with as many samples per pixel as the base has time for.
     fn knobs(&mut self, reference: &Reference, base: &Stage, sandboxed: Option<(Description, Scene)>) -> Result<Vec<Knob>> {
         let turns = knobs::turns(self.subject, base, sandboxed);
@@ -430,12 +458,12 @@ impl Work<'_> {
             let runs = match known {
                 Some(runs) => runs,
                 None => {
-                    if !self.begin(&format!("{}: {}", turn.knob, turn.setting), slice * SETTING_SEEDS as f64) {
+                    if !self.begin(&format!("{}: {}", turn.knob, turn.setting), 0.0) {
                         continue;
                     }
                     let samples = match samples {
                         Some(samples) => samples,
-                        None => *samples.insert(self.samples_for(base, slice)?),
+                        None => *samples.insert(self.samples_for(base, slice / DEARER)?),
                     };
                     let Some(runs) = self.setting(turn, samples, reference)? else { continue };
                     self.journal.add(Entry::Setting { knob: turn.knob.to_owned(), setting: turn.setting.clone(), runs: runs.clone() })?;
@@ -473,7 +501,11 @@ impl Work<'_> {
         let shown = |name: &str, words: String| Shown { name: name.to_owned(), words, file: image_file(&self.settings.folder, name) };
         let mut all = vec![shown("reference", reference.words.clone())];
         for method in methods {
-            let last = self.of_method(method.name).into_iter().find(|(seed, ..)| *seed == 0).and_then(|(_, snapshots, _)| snapshots.last().copied());
+            let last = self
+                .of_method(method.name)
+                .into_iter()
+                .find(|(seed, ..)| *seed == 0)
+                .and_then(|(_, snapshots, _)| snapshots.last().copied());
             all.extend(last.map(|last| shown(method.name, format!("{} samples per pixel, {}", last.spp, curve::seconds(last.wall)))));
         }
         all.retain(|shown| shown.file.is_file());

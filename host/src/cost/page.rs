@@ -36,7 +36,9 @@ pub const NAME: &str = "index.html";
 pub fn write(folder: &Path, report: &Report) -> Result<()> {
     let json = serde_json::to_string_pretty(report)
         .map_err(|error| Error::in_file(folder, format!("no JSON: {error}"), "this is a bug; please report it"))?;
-    for (name, text) in [("error.csv", errors(report)), ("prices.csv", prices(report)), ("knobs.csv", knobs(report)), ("time.csv", time(report))] {
+    for (name, text) in
+        [("error.csv", errors(report)), ("prices.csv", prices(report)), ("knobs.csv", knobs(report)), ("time.csv", time(report))]
+    {
         Partial::write_text(&folder.join(name), WHAT, &text)?;
     }
     Partial::write_text(&folder.join("report.json"), WHAT, &(json.clone() + "\n"))?;
@@ -76,5 +78,7 @@ fn script(name: &str, image: &Image) -> String {
     let bytes: Vec<u8> = image.pixels.iter().flatten().flat_map(|value| f16::from_f32(*value).to_le_bytes()).collect();
     let (name, width, height) = (escaped(name), image.width, image.height);
     let text = base64(&bytes);
-    format!("<script type=\"text/plain\" class=\"image\" data-name=\"{name}\" data-width=\"{width}\" data-height=\"{height}\">{text}</script>\n")
+    format!(
+        "<script type=\"text/plain\" class=\"image\" data-name=\"{name}\" data-width=\"{width}\" data-height=\"{height}\">{text}</script>\n"
+    )
 }

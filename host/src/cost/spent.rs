@@ -5,7 +5,7 @@ use std::sync::{Arc, atomic::AtomicBool};
 
 use bidir_kernel::{Contribution, Film as _, Spectrum, Technique, Techniques, Vec2};
 use cpu_time::{ProcessTime, ThreadTime};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::subject::Subject;
 use crate::{
@@ -19,8 +19,11 @@ use crate::{
 /// Renders of each part, of which the fastest counts: what else the machine does only ever adds.
 const ROUNDS: u32 = 3;
 
+/// About how many times as long as one render of every technique all of this takes.
+pub(super) const RENDERS: f64 = 12.0;
+
 /// Where time went.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Spent {
     /// What was rendered.
     pub words: String,
@@ -31,10 +34,10 @@ pub struct Spent {
 }
 
 /// A part of a render.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Part {
     /// Which.
-    pub name: &'static str,
+    pub name: String,
     /// CPU seconds.
     pub seconds: f64,
     /// Its own rays.
@@ -42,7 +45,7 @@ pub struct Part {
 }
 
 /// Rays of a render.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct Rays {
     /// Of the whole.
     pub counted: RayCounts,
@@ -80,7 +83,8 @@ pub fn spent(subject: &Subject, stage: &Stage, samples: u32, interrupt: &Arc<Ato
 
     let rays = |closest: u64, any: u64| RayCounts { closest, any };
     let mut parts = Vec::new();
-    let mut part = |name, seconds: f64, rays: RayCounts| parts.push(Part { name, seconds: seconds.max(0.0), rays: Some(rays) });
+    let mut part =
+        |name: &str, seconds: f64, rays: RayCounts| parts.push(Part { name: name.to_owned(), seconds: seconds.max(0.0), rays: Some(rays) });
     if techniques.camera_walk() {
         let calls = plugins.camera_path.min(path.seconds);
         let left = 1.0 - calls / path.seconds.max(f64::MIN_POSITIVE);
@@ -100,7 +104,7 @@ pub fn spent(subject: &Subject, stage: &Stage, samples: u32, interrupt: &Arc<Ato
     }
     let calls = plugins.camera_path + plugins.light_path + plugins.connections;
     let rayless = [("plugins", calls), ("film", film), ("plan", pilot)];
-    parts.extend(rayless.map(|(name, seconds)| Part { name, seconds, rays: None }));
+    parts.extend(rayless.map(|(name, seconds)| Part { name: name.to_owned(), seconds, rays: None }));
     parts.retain(|part| part.seconds > 0.0 || part.rays.is_some_and(|rays| rays != RayCounts::default()));
     let predicted = rays(path.rays.closest + shown.rays.closest, path.rays.any + shown.rays.any + connected.rays.any);
     Ok(Spent {

@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, atomic::AtomicBool};
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::subject::Subject;
 use crate::{
@@ -22,7 +22,7 @@ const LONGEST: u32 = 6;
 const WIDEST: u32 = 112;
 
 /// The (s,t) pyramid.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Techniques {
     /// In segments.
     pub longest: u32,
@@ -31,7 +31,7 @@ pub struct Techniques {
 }
 
 /// What one technique brings.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Apart {
     /// Vertices of the light walk.
     pub s: u32,
@@ -67,7 +67,8 @@ pub fn apart(subject: &Subject, samples: u32, interrupt: &Arc<AtomicBool>) -> Op
         let layer = |(&technique, images): (_, &[Image; 2])| picture::Layer { technique, image: small(&images[kind]) };
         there.iter().zip(&images).map(layer).collect::<Vec<_>>()
     });
-    let exposures = [Deciding::Brightest, Deciding::Middle].into_iter().zip(&layers).map(|(deciding, layers)| picture::draw(layers, deciding).1);
+    let exposures =
+        [Deciding::Brightest, Deciding::Middle].into_iter().zip(&layers).map(|(deciding, layers)| picture::draw(layers, deciding).1);
     let exposures: Vec<_> = exposures.collect();
     let uri = |kind: usize, index: usize| {
         let layer = &layers[kind][index];
@@ -91,6 +92,10 @@ fn mean(image: &Image) -> f64 {
 }
 
 fn exposed(image: &Image, factor: f64) -> String {
-    let rgba: Vec<u8> = image.pixels.iter().flat_map(|[r, g, b]| [*r, *g, *b].map(|v| png::toned(factor * f64::from(v))).into_iter().chain([255])).collect();
+    let rgba: Vec<u8> = image
+        .pixels
+        .iter()
+        .flat_map(|[r, g, b]| [*r, *g, *b].map(|v| png::toned(factor * f64::from(v))).into_iter().chain([255]))
+        .collect();
     png::uri(image.width as usize, image.height as usize, &rgba)
 }

@@ -15,7 +15,7 @@ const EPSILON: f64 = 0.01;
 /// The render's own estimate of its error, from its two halves.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Noise {
-    /// Mean over pixels of the estimated variance over (value² + 0.01), without the 0.1 % largest.
+    /// Mean over pixels of the estimated variance over (value² + 0.01), without the 0.1 % largest; the value is the mean of 3×3 pixels.
     pub relmse: f64,
     /// Mean over pixels and bands of the estimated variance.
     pub mse: f64,
@@ -60,9 +60,9 @@ impl Film {
     /// How noisy [`Film::develop`] is; `None` before there are two samples.
     ///
     /// With m and n samples in the halves, whose pixel values are a and b, Var(a − b) = σ² (1/m + 1/n) and the picture's variance is
-    /// σ² / (m + n); so (a − b)² m n / (m + n)² estimates it without bias if samples are independent, and from above where the
-    /// sampler stratifies them. relMSE divides it by the squared value of the picture itself: it is low while few pixels have seen
-    /// the light that matters, like every estimate from the samples alone.
+    /// σ² / (m + n); so (a − b)² m n / (m + n)² estimates it without bias: the sampler ties no sample of one half to one of the other.
+    /// relMSE divides by the squared value of the picture, of which a pixel with a firefly knows little: its neighbours are asked too.
+    /// It is low while few pixels have seen the light that matters, like every estimate from the samples alone.
     pub fn noise(&self) -> Option<Noise> {
         let samples = lock(&self.tally).samples.map(|n| n as f64);
         let total = samples[0] + samples[1];
@@ -72,16 +72,21 @@ impl Film {
         let share = samples[0] * samples[1] / (total * total);
         let scales = samples.map(|n| self.scale(n));
         let whole = self.scale(total);
-        let mut relative = Vec::with_capacity(self.layout.pixels());
-        let mut sum = 0.0;
+        let mut variances = Vec::with_capacity(self.layout.pixels());
+        let mut values = Vec::with_capacity(self.layout.pixels());
         self.each(|_, column, row, [even, odd]| {
             let a = scales[0].value(&even, column, row);
             let b = scales[1].value(&odd, column, row);
-            let value = whole.value(&(even + odd), column, row);
-            let variance: [f64; 3] = std::array::from_fn(|i| (a[i] - b[i]) * (a[i] - b[i]) * share);
-            sum += variance.iter().sum::<f64>() / 3.0;
-            relative.push(variance.iter().zip(value).map(|(v, m)| v / (m * m + EPSILON)).sum::<f64>() / 3.0);
+            variances.push([0, 1, 2].map(|i| (a[i] - b[i]) * (a[i] - b[i]) * share));
+            values.push(whole.value(&(even + odd), column, row));
         });
+        let sum: f64 = variances.iter().map(|v| v.iter().sum::<f64>() / 3.0).sum();
+        let width = self.layout.crop.width as usize;
+        let relative = variances.iter().enumerate().map(|(index, variance)| {
+            let mean = around(&values, width, index);
+            variance.iter().zip(mean).map(|(v, m)| v / (m * m + EPSILON)).sum::<f64>() / 3.0
+        });
+        let mut relative: Vec<f64> = relative.collect();
         let pixels = relative.len() as f64;
         Some(Noise { relmse: trimmed_mean(&mut relative, TRIM), mse: sum / pixels })
     }
@@ -108,6 +113,19 @@ impl Film {
             }
         }
     }
+}
+
+/// The mean of a pixel and those about it, as far as there are any.
+fn around(values: &[[f64; 3]], width: usize, index: usize) -> [f64; 3] {
+    let near = |at: usize, end: usize| at.saturating_sub(1)..(at + 2).min(end);
+    let (mut sum, mut count) = ([0.0; 3], 0.0);
+    for row in near(index / width, values.len() / width) {
+        for column in near(index % width, width) {
+            sum.iter_mut().zip(values[row * width + column]).for_each(|(sum, value)| *sum += value);
+            count += 1.0;
+        }
+    }
+    sum.map(|sum| sum / count)
 }
 
 #[derive(Clone, Copy)]

@@ -53,13 +53,28 @@ impl std::ops::AddAssign for BuildStats {
     }
 }
 
+/// How much building is worth.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Quality {
+    /// For rays that are as fast as can be.
+    #[default]
+    High,
+    /// For a tree that is there soon: a short search, and nothing is placed better afterwards.
+    Low,
+}
+
 impl Bvh {
     /// Builds the tree; the primitives' memory is freed on the way.
     pub fn build(primitives: Primitives) -> Self {
+        Self::build_as(primitives, Quality::default())
+    }
+
+    /// The same with so much care.
+    pub fn build_as(primitives: Primitives, quality: Quality) -> Self {
         let start = Instant::now();
         let bounds: Vec<Bounds> = primitives.all_bounds().collect();
         let everything = bounds.iter().fold(Bounds::EMPTY, |all, &one| all.join(one));
-        let binary = binary_tree(&bounds);
+        let binary = binary_tree(&bounds, quality);
         drop(bounds);
 
         let mut bvh = Self::empty(everything, primitives.some_hidden);
@@ -97,7 +112,7 @@ impl Primitives {
     }
 }
 
-fn binary_tree(bounds: &[Bounds]) -> Bvh2 {
+fn binary_tree(bounds: &[Bounds], quality: Quality) -> Bvh2 {
     /// How many nodes reinsertion tries to place better, and which share that is at least and at most.
     const REINSERTED: f32 = 150_000.0;
     const SHARE: [f32; 2] = [0.05, 0.15];
@@ -105,8 +120,14 @@ fn binary_tree(bounds: &[Bounds]) -> Bvh2 {
     const SMALL: usize = 10_000;
     let boxes: Vec<Aabb> = bounds.iter().map(|b| Aabb::new(b.min.into(), b.max.into())).collect();
     let indices = (0..boxes.len() as u32).collect();
-    let search = PlocSearchDistance::Medium;
+    let search = match quality {
+        Quality::High => PlocSearchDistance::Medium,
+        Quality::Low => PlocSearchDistance::Minimum,
+    };
     let mut binary = PlocBuilder::with_capacity(boxes.len()).build(search, &boxes, indices, SortPrecision::U64, 3);
+    if quality == Quality::Low {
+        return binary;
+    }
     let share = if boxes.len() < SMALL { 1.0 } else { (REINSERTED / boxes.len() as f32).clamp(SHARE[0], SHARE[1]) };
     ReinsertionOptimizer::default().run(&mut binary, share, None);
     binary

@@ -31,7 +31,7 @@ mod triangle;
 mod tests;
 
 pub use bounds::Bounds;
-pub use build::BuildStats;
+pub use build::{BuildStats, Quality};
 pub use bvh::{Bvh, Triangles};
 pub use cylinder::Cylinder;
 pub use disk::Disk;

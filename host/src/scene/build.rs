@@ -9,7 +9,7 @@ use glam::{DAffine3, DVec3};
 use crate::{
     error::{Error, Result},
     plugin::{Roster, Sandbox, Strictness},
-    rays::{Bvh, Geometry as _, Visibility},
+    rays::{Bvh, Geometry as _, Quality, Visibility},
     scene::{
         Scene,
         camera::SceneCamera,
@@ -28,6 +28,7 @@ use crate::{
 
 struct Builder<'a> {
     description: &'a Description,
+    quality: Quality,
     groups: Vec<Group>,
     /// The groups' shapes; in the end they follow the others.
     in_groups: Vec<Shape>,
@@ -39,16 +40,21 @@ struct Builder<'a> {
 impl Scene {
     /// Builds the scene; what it drops on the way it counts in [`Scene::degenerate`].
     pub fn new(description: &Description) -> Result<Self> {
-        Self::build(description, None)
+        Self::with_quality(description, Quality::default())
+    }
+
+    /// The same with trees of that quality.
+    pub fn with_quality(description: &Description, quality: Quality) -> Result<Self> {
+        Self::build(description, quality, None)
     }
 
     /// The scene of a description in which something has changed. The trees of groups whose [`Arc`] has not, nor that of any
     /// group within them, are not built again but shared; the outermost tree is built, with what stands in no group.
     pub fn rebuilt(&self, description: &Description) -> Result<Self> {
-        Ok(Self::build(description, Some(self))?.with_triangles(self.geometry.triangles()))
+        Ok(Self::build(description, Quality::default(), Some(self))?.with_triangles(self.geometry.triangles()))
     }
 
-    fn build(description: &Description, before: Option<&Self>) -> Result<Self> {
+    fn build(description: &Description, quality: Quality, before: Option<&Self>) -> Result<Self> {
         let mut roster = Roster::default();
         let ids = 0..description.materials.len() as u32;
         let finishes = ids.map(|id| Finish::new(&description.materials, MaterialId(id), &mut roster));
@@ -56,7 +62,7 @@ impl Scene {
             Error::new("a material names one that is not there, or a twosided one inside another", "give each side a plain material")
         })?;
         let (groups, in_groups, sources) = (Vec::new(), Vec::new(), Vec::new());
-        let mut builder = Builder { description, groups, in_groups, finishes, roster, sources };
+        let mut builder = Builder { description, quality, groups, in_groups, finishes, roster, sources };
         builder.groups(before)?;
         builder.finish()
     }
@@ -99,7 +105,7 @@ impl Builder<'_> {
             all.instance(instance)?;
         }
         let Collection { primitives, owners, shapes, degenerate, .. } = all;
-        let geometry = Arc::new(Bvh::build(primitives));
+        let geometry = Arc::new(Bvh::build_as(primitives, self.quality));
         let shapes = self.add_to_groups(shapes);
         Ok(Group { source: source.clone(), geometry, owners: owners.into(), shapes, origin, degenerate })
     }
@@ -129,7 +135,7 @@ impl Builder<'_> {
         }
         let Collection { primitives, owners, mut shapes, degenerate, .. } = all;
         let camera = SceneCamera::new(sensor, film, origin)?;
-        let geometry = Bvh::build(primitives);
+        let geometry = Bvh::build_as(primitives, self.quality);
         let (center, radius) = ball(&geometry);
         for emitter in &self.description.emitters {
             let source = self.emitter(emitter, origin, center, radius)?;

@@ -16,7 +16,7 @@ use crate::{
 };
 
 /// How many rays were cast.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct RayCounts {
     /// For the nearest surface.
     pub closest: u64,

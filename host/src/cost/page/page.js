@@ -388,7 +388,7 @@ const priceSection = report => {
     return [price.method, ...goals.map((goal, k) => priceCell(priceAt(price, goal), best[k])), biasCell(method?.bias)];
   });
   host.append(el('div', { class: 'set' }, table([['Method'], ...goals.map(goal => [`relMSE ${short(goal)}`, 'number']), ['Bias', 'number wide']], rows,
-    { style: 'stack', caption: 'CPU time, and below it wall time. ~ is extrapolated, not measured. “Never”: the method misses light, so it settles on another picture.' })));
+    { style: 'stack', caption: 'CPU time, and below it wall time. ~ is extrapolated: as 1/t from the last three points. “Never”: the method misses light, so it settles on another picture.' })));
 };
 
 // ---- Knobs ----

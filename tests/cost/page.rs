@@ -1,0 +1,65 @@
+//! All of it on a small scene: what is written, what is kept, what goes on.
+
+use std::{
+    fs,
+    path::Path,
+    sync::{Arc, atomic::AtomicBool},
+    time::Duration,
+};
+
+use bidir::cost::{Report, Settings, measure, page};
+
+use super::of_example;
+
+fn settings(folder: &Path, seconds: f64) -> Settings {
+    Settings { folder: folder.to_owned(), budget: Duration::from_secs_f64(seconds), references: Vec::new(), digest: "cornell".to_owned() }
+}
+
+fn measured(folder: &Path, seconds: f64, interrupt: &Arc<AtomicBool>) -> Report {
+    let subject = of_example("cornell", 24);
+    let report = measure(&subject, None, &settings(folder, seconds), interrupt, &mut |_, _| {}).expect("a report");
+    page::write(folder, &report).expect("a page");
+    report
+}
+
+/// Rays of a render are those of its parts, each rendered alone.
+#[test]
+fn a_report_is_whole_and_its_rays_are_accounted_for() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let report = measured(folder.path(), 8.0, &Arc::default());
+    let names: Vec<_> = report.methods.iter().map(|method| method.name).collect();
+    assert_eq!(names, ["path", "light", "bdpt", "auto"]);
+    assert!(report.prices.iter().all(|prices| prices.targets.len() == 4) && !report.plan.is_empty());
+    let time = report.time.as_ref().expect("where time went");
+    assert_eq!(time.rays.counted, time.rays.predicted);
+    assert!(time.rays.counted.closest > 0);
+    assert!(report.pyramid.as_ref().is_some_and(|pyramid| pyramid.techniques.len() > 10));
+    assert_eq!(report.images.len(), 5);
+    let text = |name: &str| fs::read_to_string(folder.path().join(name)).expect("a file");
+    let page = text("index.html");
+    assert!(!page.contains("{{") && page.contains("data-name=\"reference\"") && page.contains("data-name=\"auto\""));
+    let rows: usize = report.methods.iter().flat_map(|method| &method.points).map(|point| point.runs.len()).sum();
+    assert_eq!(text("error.csv").lines().count(), 1 + rows);
+    assert!(text("prices.csv").lines().count() == 17 && text("knobs.csv").contains("sampler,independent"));
+    assert!(text("report.json").contains("\"crossings\""));
+}
+
+/// The budget is spent, so nothing is measured again, and what is shown of it is the same.
+#[test]
+fn what_was_measured_is_not_measured_again() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let first = measured(folder.path(), 3.0, &Arc::default());
+    let again = measured(folder.path(), 3.0, &Arc::default());
+    let errors = |report: &Report| format!("{:?}", report.methods);
+    assert_eq!(errors(&first), errors(&again));
+    assert!(again.methods.len() == 4 && again.spent < 4.0 * first.spent);
+}
+
+#[test]
+fn an_interrupted_one_is_a_page_too_and_goes_on() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let cut = measured(folder.path(), 4.0, &Arc::new(AtomicBool::new(true)));
+    assert!(cut.interrupted && cut.methods.is_empty() && folder.path().join("index.html").is_file());
+    let whole = measured(folder.path(), 4.0, &Arc::default());
+    assert_eq!(whole.methods.len(), 4);
+}
