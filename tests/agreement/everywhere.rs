@@ -7,6 +7,7 @@
 use std::path::Path;
 
 use bidir::{
+    image::Image,
     load,
     plan::{Named, Stage, choice::open, effects::Effects, evidence::shares, gaps::gaps, words},
     plugin::{Library, Strictness},
@@ -114,6 +115,7 @@ fn every_plan_agrees(file: &str) {
     let description = load::load(&root.join(file), &defines, &library).expect("a scene").description;
     let subject = Subject { scene: Scene::new(&description).expect("a scene"), description };
     let effects = Effects::of(&subject.description, &subject.scene);
+    presets_make_one_image(file, &subject);
     let max_depth = subject.description.integrator.max_depth;
     let mut plans = vec![Stage::BIDIRECTIONAL];
     plans.extend(open(&effects, max_depth));
@@ -156,6 +158,19 @@ fn every_plan_agrees(file: &str) {
     }
     assert!(failures.is_empty(), "{}", failures.join("\n"));
     assert!(compared > 0, "{file}: no plan to compare");
+}
+
+/// The preset that a render takes and the one for any scene, bit for bit.
+fn presets_make_one_image(file: &str, subject: &Subject) {
+    let scene = Scene::new(&subject.description).expect("a scene").with_effects(bidir_kernel::Effects::ALL);
+    let full = Subject { scene, description: subject.description.clone() };
+    for named in [Named::Path, Named::Light, Named::Bdpt] {
+        let techniques = named.stage().expect("a plan").techniques();
+        let [chosen, full] =
+            [subject, &full].map(|subject| subject.image(&subject.job(subject.strategy(techniques, Heuristic::Balance), 1, 9)));
+        let bits = |image: &Image| image.pixels.iter().flatten().map(|value| value.to_bits()).collect::<Vec<_>>();
+        assert!(bits(&chosen) == bits(&full), "{file}: {}", named.name());
+    }
 }
 
 macro_rules! scenes {

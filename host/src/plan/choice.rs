@@ -11,8 +11,11 @@ const WALKS: [f64; 5] = [0.0, 0.25, 0.5, 1.0, 2.0];
 /// Connections per light path that are tried.
 const CONNECTIONS: [f64; 4] = [0.0, 0.25, 0.5, 1.0];
 
-/// A plan that is under way is left for one that is so much better.
-const HYSTERESIS: f64 = 1.03;
+/// The best of many predictions is the luckiest as well. So the plan under way, at first the best one without light paths, which is one of
+/// few, is left only for one that is better by more than chance explains: by so much over the root of the pilot's camera paths, within these
+/// bounds.
+const LUCK: f64 = 18.0;
+const MARGIN: [f64; 2] = [0.03, 0.2];
 
 /// Measured CPU nanoseconds.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
@@ -161,9 +164,12 @@ pub fn choose(open: &[Stage], evidence: &Evidence, costs: &Costs, until: Until, 
     }
     all.sort_by(|a, b| b.efficiency().total_cmp(&a.efficiency()));
     let best = *all.first()?;
-    let same = |candidate: &&Candidate| under_way.is_some_and(|stage| stage.techniques() == candidate.stage.techniques());
-    let chosen = match all.iter().find(same) {
-        Some(current) if current.efficiency() * HYSTERESIS >= best.efficiency() => *current,
+    let stays = |candidate: &&Candidate| match under_way {
+        Some(stage) => stage.techniques() == candidate.stage.techniques(),
+        None => candidate.stage.techniques().light_walks() == 0.0,
+    };
+    let chosen = match all.iter().find(stays) {
+        Some(current) if current.efficiency() * margin(evidence.samples()) >= best.efficiency() => *current,
         _ => best,
     };
     let used: Vec<Join> = Join::ALL.into_iter().filter(|&join| chosen.stage.effort(join) > 0.0).collect();
@@ -190,6 +196,11 @@ impl Stage {
         } = 0.0;
         other
     }
+}
+
+/// How much better another plan has to be, after so many camera paths.
+fn margin(samples: usize) -> f64 {
+    1.0 + (LUCK / (samples.max(1) as f64).sqrt()).clamp(MARGIN[0], MARGIN[1])
 }
 
 #[cfg(test)]
@@ -249,7 +260,7 @@ mod tests {
         let evidence = evidence([0.2, 0.78, 0.01, 0.01, 0.0]);
         let best = choose(&open, &evidence, &COSTS, Until::Samples(32.0), None).unwrap();
         let second = best.candidates[1].stage;
-        let stays = best.candidates[1].efficiency() * HYSTERESIS >= best.chosen.efficiency();
+        let stays = best.candidates[1].efficiency() * margin(evidence.samples()) >= best.chosen.efficiency();
         let again = choose(&open, &evidence, &COSTS, Until::Samples(32.0), Some(&second)).unwrap().chosen.stage;
         assert_eq!(again == second, stays);
         assert_eq!(
