@@ -28,7 +28,7 @@ pub struct Errors {
     pub trimmed: f64,
     /// Mean of |x − r| / (|x| + |r| + 0.01).
     pub smape: f64,
-    /// Mean of x over mean of r, less 1.
+    /// Mean of x over mean of r, less 1; 0 if r is black.
     pub bias: f64,
     /// The share of pixels more than ten times as bright as r is there and in the mean.
     pub fireflies: f64,
@@ -99,7 +99,8 @@ impl Reference {
     pub fn errors(&self, image: &Image) -> Result<Errors> {
         let found = against_halves(image, [&self.halves[0], &self.halves[1]])?;
         let (relmse, trimmed, smape, fireflies) = (found.relmse, found.relmse_trimmed, found.smape, found.fireflies);
-        Ok(Errors { relmse, trimmed, smape, bias: found.bias, fireflies })
+        let bias = if found.bias.is_finite() { found.bias } else { 0.0 };
+        Ok(Errors { relmse, trimmed, smape, bias, fireflies })
     }
 
     /// r's own relMSE: (a − b)/2 is as far from 0 as r is from the truth. `None` where there are no two halves.
