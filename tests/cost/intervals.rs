@@ -56,14 +56,14 @@ fn brighter(image: &Image, factor: f32) -> Image {
 fn interval(subject: &Subject, reference: &Reference, seed: u64, factor: f32, samples: u32) -> Interval {
     let bias = |seed| reference.errors(&brighter(&picture(subject, seed, samples), factor)).expect("one size").bias;
     let biases: Vec<f64> = (seed..seed + SEEDS).map(bias).collect();
-    Interval::of(&biases, reference.doubt())
+    reference.interval(&biases, samples)
 }
 
 #[test]
 fn of_a_known_picture_intervals_hold_no_bias_in_nine_of_ten_runs() {
     let subject = of_text("floor", FLOOR);
     let known = Image { width: 16, height: 16, pixels: vec![[0.5; 3]; 256] };
-    let reference = Reference::rendered([known.clone(), known], "known".to_owned());
+    let reference = Reference::rendered([known.clone(), known], 1, "known".to_owned());
     let right = (0..RUNS).filter(|run| !interval(&subject, &reference, 1000 + run * SEEDS, 1.0, 4).excludes(0.0)).count();
     println!("{right} of {RUNS} intervals hold 0");
     assert!(right >= 90, "{right}");
@@ -76,7 +76,8 @@ fn of_a_known_picture_intervals_hold_no_bias_in_nine_of_ten_runs() {
 #[test]
 fn against_two_halves_they_do_too() {
     let subject = of_text("balls", BALLS);
-    let reference = |seed: u64, samples| Reference::rendered([seed, seed + 1].map(|seed| picture(&subject, seed, samples)), String::new());
+    let reference =
+        |seed: u64, samples| Reference::rendered([seed, seed + 1].map(|seed| picture(&subject, seed, samples)), samples, String::new());
     let one = |run: u64| interval(&subject, &reference(1_000_000 + 2 * run, 32), 1000 + run * SEEDS, 1.0, 16);
     let right = (0..RUNS).filter(|&run| !one(run).excludes(0.0)).count();
     println!("{right} of {RUNS} intervals hold 0");

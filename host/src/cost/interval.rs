@@ -24,13 +24,14 @@ pub struct Interval {
 
 impl Interval {
     /// Of the mean of independent values, less something that was known with that standard deviation (from many values, so that its own
-    /// is exact). The degrees of freedom are Welch's (1947), rounded down.
-    pub fn of(values: &[f64], deviation: f64) -> Self {
+    /// is exact). The values' mean has a standard deviation of `least` at least, told by many more samples: few values that all missed what
+    /// is rare agree with each other, and do not know it. The degrees of freedom are Welch's (1947), rounded down.
+    pub fn of(values: &[f64], deviation: f64, least: f64) -> Self {
         let n = values.len() as f64;
         let value = values.iter().sum::<f64>() / n.max(1.0);
         let squares: f64 = values.iter().map(|x| (x - value) * (x - value)).sum();
         let own = if n > 1.0 { squares / (n - 1.0) / n } else { f64::NAN };
-        let all = own + deviation * deviation;
+        let all = if own < least * least { least * least } else { own } + deviation * deviation;
         let freedom = if own > 0.0 { (n - 1.0) * (all / own) * (all / own) } else { f64::INFINITY };
         let student = if freedom < 31.0 { STUDENT[(freedom as usize).clamp(1, 30) - 1] } else { 1.960 };
         let reach = student * all.sqrt();
@@ -50,7 +51,7 @@ mod tests {
 
     #[test]
     fn the_interval_is_students() {
-        let found = Interval::of(&[1.0, 2.0, 3.0], 0.0);
+        let found = Interval::of(&[1.0, 2.0, 3.0], 0.0, 0.0);
         let reach = 4.303 * (1.0f64 / 3.0).sqrt();
         assert!((found.value - 2.0).abs() < 1e-12 && (found.high.unwrap() - 2.0 - reach).abs() < 1e-9, "{found:?}");
         assert!(!found.excludes(0.0) && found.excludes(-1.0) && found.excludes(5.0));
@@ -58,15 +59,21 @@ mod tests {
 
     #[test]
     fn a_reference_that_is_less_sure_than_the_values_widens_it() {
-        let found = Interval::of(&[1.0, 1.0, 1.0, 1.0], 0.5);
+        let found = Interval::of(&[1.0, 1.0, 1.0, 1.0], 0.5, 0.0);
         assert!((found.high.unwrap() - 1.98).abs() < 1e-9, "{found:?}");
-        let [few, many] = [&[0.9, 1.1][..], &[0.9, 1.1, 0.9, 1.1, 0.9, 1.1]].map(|values| Interval::of(values, 0.01));
+        let [few, many] = [&[0.9, 1.1][..], &[0.9, 1.1, 0.9, 1.1, 0.9, 1.1]].map(|values| Interval::of(values, 0.01, 0.0));
         assert!(few.high.unwrap() > many.high.unwrap());
     }
 
     #[test]
+    fn values_that_agree_by_luck_are_no_surer_than_what_is_known() {
+        let found = Interval::of(&[1.0, 1.001, 0.999, 1.0], 0.0, 0.1);
+        assert!((found.high.unwrap() - 1.196).abs() < 1e-3, "{found:?}");
+    }
+
+    #[test]
     fn one_value_says_nothing_of_its_interval() {
-        assert_eq!(Interval::of(&[1.0], 0.1), Interval { value: 1.0, low: None, high: None });
-        assert!(!Interval::of(&[1.0], 0.1).excludes(0.0));
+        assert_eq!(Interval::of(&[1.0], 0.1, 0.0), Interval { value: 1.0, low: None, high: None });
+        assert!(!Interval::of(&[1.0], 0.1, 0.0).excludes(0.0));
     }
 }

@@ -5,7 +5,7 @@ use serde::Serialize;
 
 use super::{
     curve::Bias,
-    interval::Interval,
+    reference::Reference,
     subject::{Manner, Snapshot, Subject},
 };
 use crate::{
@@ -208,7 +208,7 @@ impl Turn {
 }
 
 /// What a setting's renders say together: each its samples, CPU seconds, errors.
-pub fn setting(turn: &Turn, runs: &[Snapshot], doubt: f64) -> Option<Setting> {
+pub fn setting(turn: &Turn, runs: &[Snapshot], reference: &Reference) -> Option<Setting> {
     let mean = |of: &dyn Fn(&Snapshot) -> f64| runs.iter().map(of).sum::<f64>() / runs.len() as f64;
     let spp = runs.first()?.spp;
     let (cpu, relmse) = (mean(&|run| run.cpu), mean(&|run| run.errors.relmse));
@@ -221,7 +221,7 @@ pub fn setting(turn: &Turn, runs: &[Snapshot], doubt: f64) -> Option<Setting> {
         relmse,
         trimmed: mean(&|run| run.errors.trimmed),
         efficiency: 1.0 / (relmse.max(f64::MIN_POSITIVE) * cpu.max(f64::MIN_POSITIVE)),
-        bias: Bias { interval: Interval::of(&biases, doubt), declared: turn.declared.map(str::to_owned) },
+        bias: Bias { interval: reference.interval(&biases, spp), declared: turn.declared.map(str::to_owned) },
         pareto: false,
     })
 }

@@ -28,7 +28,6 @@ use serde::Serialize;
 
 use self::{
     curve::{Bias, Method, Prices},
-    interval::Interval,
     journal::{Entry, Header, Journal},
     knobs::Knob,
     reference::{Reference, picture},
@@ -62,7 +61,7 @@ const SAMPLES: f64 = 8.0;
 /// Renders of each setting of a knob.
 const SETTING_SEEDS: u64 = 4;
 /// A setting takes about so many times as long as the base, in the mean.
-const DEARER: f64 = 1.7;
+const DEARER: f64 = 2.2;
 /// Seeds of the reference's halves, far from those of what is measured.
 const HALVES: u64 = 1 << 40;
 
@@ -319,7 +318,7 @@ impl Work<'_> {
         }
         let halves = [picture(&half_file(&self.settings.folder, 0))?, picture(&half_file(&self.settings.folder, 1))?];
         let words = format!("two halves by bdpt, {} samples per pixel each", samples.unwrap_or(0));
-        Ok(Some(Reference::rendered(halves, words)))
+        Ok(Some(Reference::rendered(halves, samples.unwrap_or(0), words)))
     }
 
     /// What `auto` chooses, its card, and the wall-clock seconds of a sample of every technique for all pixels.
@@ -370,8 +369,9 @@ impl Work<'_> {
             let biases: Vec<f64> = runs.iter().filter_map(|(_, snapshots, _)| Some(snapshots.last()?.errors.bias)).collect();
             let missing = name.stage().map(|stage| gaps(&self.subject.effects, &stage, max_depth)).unwrap_or_default();
             let declared = missing.first().map(|gap| format!("it never finds {} from {}: {}", gap.class, gap.lights, gap.what));
+            let samples = runs.iter().filter_map(|(_, snapshots, _)| snapshots.last()).map(|last| last.spp).min().unwrap_or(0);
             let points = curve::points(&runs.into_iter().map(|(seed, snapshots, _)| (seed, snapshots)).collect::<Vec<_>>());
-            let bias = Bias { interval: Interval::of(&biases, reference.doubt()), declared };
+            let bias = Bias { interval: reference.interval(&biases, samples), declared };
             Some(Method { name: name.name(), words, steady: name.stage().is_some(), points, bias })
         });
         Ok(methods.collect())
@@ -479,7 +479,7 @@ impl Work<'_> {
                     runs
                 }
             };
-            settings.extend(knobs::setting(turn, &runs, reference.doubt()).map(|setting| (turn.knob, setting)));
+            settings.extend(knobs::setting(turn, &runs, reference).map(|setting| (turn.knob, setting)));
         }
         Ok(knobs::together(settings))
     }

@@ -4,6 +4,8 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
+use super::interval::Interval;
+
 use crate::{
     compare::against_halves,
     error::{Error, Result},
@@ -40,6 +42,8 @@ pub struct Reference {
     halves: [Image; 2],
     /// Whether there are two halves in truth.
     independent: bool,
+    /// Samples per pixel of both halves together, where that is known.
+    samples: Option<u32>,
     /// Whose it is, and how long it took.
     pub words: String,
     /// Whether it was given.
@@ -47,9 +51,9 @@ pub struct Reference {
 }
 
 impl Reference {
-    /// Two independent renders of equally many samples.
-    pub fn rendered(halves: [Image; 2], words: String) -> Self {
-        Self { halves, independent: true, words, given: false }
+    /// Two independent renders of so many samples per pixel each.
+    pub fn rendered(halves: [Image; 2], samples: u32, words: String) -> Self {
+        Self { halves, independent: true, samples: Some(2 * samples), words, given: false }
     }
 
     /// One file, whose own noise then counts as every picture's error; or two independent halves.
@@ -61,14 +65,20 @@ impl Reference {
         match <[Image; 1]>::try_from(files.iter().map(|file| picture(file)).collect::<Result<Vec<_>>>()?) {
             Ok([one]) => {
                 let words = format!("{names}, as given; its own noise is taken for everybody's error");
-                Ok(Self { halves: [one.clone(), one], independent: false, words, given: true })
+                Ok(Self { halves: [one.clone(), one], independent: false, samples: None, words, given: true })
             }
             Err(images) => match <[Image; 2]>::try_from(images) {
                 Ok([a, b]) => {
                     if (a.width, a.height) != (b.width, b.height) {
                         return Err(Error::in_file(&files[1], "its size is not that of the other half", "give two halves of one picture"));
                     }
-                    Ok(Self { halves: [a, b], independent: true, words: format!("{names}, two halves as given"), given: true })
+                    Ok(Self {
+                        halves: [a, b],
+                        independent: true,
+                        samples: None,
+                        words: format!("{names}, two halves as given"),
+                        given: true,
+                    })
                 }
                 Err(images) => {
                     let thing = format!("{} references are given", images.len());
@@ -118,6 +128,15 @@ impl Reference {
         (self.independent && !a.pixels.is_empty()).then(|| sum / a.pixels.len() as f64)
     }
 
+    /// How biased pictures of so many samples per pixel each are that have these biases. They are taken to be at least as noisy as the
+    /// reference's samples say, where it is known how many there were.
+    pub fn interval(&self, biases: &[f64], samples: u32) -> Interval {
+        let doubt = self.doubt();
+        let all = f64::from(samples) * biases.len() as f64;
+        let least = self.samples.map_or(0.0, |reference| doubt * (f64::from(reference) / all.max(1.0)).sqrt());
+        Interval::of(biases, doubt, least)
+    }
+
     /// The standard deviation of r's mean, as a share of it, from blocks of (a − b)/2, taken to be independent. 0 where there are no two
     /// halves: what is not known is not in an interval.
     pub fn doubt(&self) -> f64 {
@@ -164,7 +183,7 @@ mod tests {
             image.pixels.iter_mut().enumerate().for_each(|(i, pixel)| *pixel = [1.0 + sign * if i % 2 == 0 { 0.1 } else { -0.1 }; 3]);
             image
         };
-        let reference = Reference::rendered([noisy(1.0), flat(1.0)], String::new());
+        let reference = Reference::rendered([noisy(1.0), flat(1.0)], 8, String::new());
         let errors = reference.errors(&flat(1.2)).unwrap();
         assert!((errors.relmse - 0.04 / 1.01).abs() < 1e-3, "{errors:?}");
         assert!((errors.bias - 0.2).abs() < 1e-6 && errors.fireflies == 0.0);
@@ -181,7 +200,7 @@ mod tests {
             let sign = if (i % 32 < 16) == (i / 32 < 16) { 0.1 } else { -0.1 };
             (*a, *b) = ([1.0 + sign; 3], [1.0 - sign; 3]);
         }
-        let doubt = Reference::rendered([a, b], String::new()).doubt();
+        let doubt = Reference::rendered([a, b], 8, String::new()).doubt();
         assert!((doubt - 0.05).abs() < 1e-4, "{doubt}");
     }
 
@@ -189,7 +208,7 @@ mod tests {
     fn a_firefly_is_counted_and_a_bright_lamp_is_not() {
         let (mut reference, mut image) = (flat(1.0), flat(1.0));
         (reference.pixels[5], image.pixels[5], image.pixels[9]) = ([50.0; 3], [60.0; 3], [20.0; 3]);
-        let errors = Reference::rendered([reference.clone(), reference], String::new()).errors(&image).unwrap();
+        let errors = Reference::rendered([reference.clone(), reference], 8, String::new()).errors(&image).unwrap();
         assert_eq!(errors.fireflies, 1.0 / 1024.0);
     }
 }
