@@ -7,7 +7,10 @@ use std::{
     time::Duration,
 };
 
-use bidir::cost::{Report, Settings, measure, page};
+use bidir::{
+    cost::{Report, Settings, measure, page, spent},
+    plan::Stage,
+};
 
 use super::of_example;
 
@@ -42,6 +45,17 @@ fn a_report_is_whole_and_its_rays_are_accounted_for() {
     assert_eq!(text("error.csv").lines().count(), 1 + rows);
     assert!(text("prices.csv").lines().count() == 17 && text("knobs.csv").contains("sampler,independent"));
     assert!(text("report.json").contains("\"crossings\""));
+}
+
+/// With some of the connections, several light paths, or none.
+#[test]
+fn the_rays_of_any_plan_are_those_of_its_parts() {
+    let subject = of_example("cornell", 16);
+    for (walks, connection) in [(1.0, 0.25), (2.0, 2.0), (0.25, 0.125), (1.0, 0.0), (0.0, 0.0)] {
+        let stage = Stage { connection, lens_splat: walks, lens_hit: walks, ..Stage::BIDIRECTIONAL };
+        let rays = spent::spent(&subject, &stage, 4, &Arc::default()).expect("where time went").rays;
+        assert_eq!(rays.counted, rays.predicted, "{walks} {connection}");
+    }
 }
 
 /// The budget is spent, so nothing is measured again, and what is shown of it is the same.

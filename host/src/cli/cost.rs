@@ -76,7 +76,11 @@ pub(super) fn run(arguments: &Cost) -> Result<Outcome> {
             });
             println!("{:<5} relMSE {}", prices.method, words.collect::<Vec<_>>().join(", "));
         }
-        let rest = if report.interrupted { "; not all of it, run again to go on" } else { "" };
+        let rest = match (report.interrupted, report.out_of_time) {
+            (true, _) => "; not all of it, run again to go on",
+            (false, true) => "; not all of it, give a larger --budget and another folder",
+            _ => "",
+        };
         println!("{:.0} s{rest}: {}", report.spent, folder.join(page::NAME).display());
     }
     Ok(if interrupt.load(std::sync::atomic::Ordering::Relaxed) { Outcome::Interrupted } else { Outcome::Done })

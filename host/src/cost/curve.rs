@@ -9,6 +9,8 @@ pub const TARGETS: [f64; 4] = [1e-1, 1e-2, 1e-3, 1e-4];
 
 /// Seconds from which on a time is long enough to tell what samples cost.
 const LONG: f64 = 0.02;
+/// Seconds that everything takes at least: clocks are coarse.
+const SOON: f64 = 1e-6;
 /// Points that a price beyond the last of them rests on.
 const LAST: usize = 3;
 /// Places at which two curves are held against each other.
@@ -140,7 +142,7 @@ impl Point {
 
 impl Method {
     /// Where renders stand: errors in the mean, times as if nothing else had been done. What is left of a tiny error after the
-    /// reference's noise is taken out may be below 0, which is no error.
+    /// reference's noise is taken out may be below 0.
     fn stands(&self) -> Vec<Stand> {
         let before = std::iter::once(None).chain(self.points.iter().map(Some));
         let steps: Vec<(u32, [f64; 2])> = self
@@ -161,9 +163,9 @@ impl Method {
             for ((spent, time), pace) in spent.iter_mut().zip(times).zip(paces) {
                 *spent += time.min(pace * f64::from(*samples));
             }
-            (point.relmse() > 0.0).then(|| Stand { cpu: spent[0], wall: spent[1], relmse: point.relmse() })
+            Stand { cpu: spent[0].max(SOON), wall: spent[1].max(SOON), relmse: point.relmse() }
         };
-        self.points.iter().zip(&steps).filter_map(stand).collect()
+        self.points.iter().zip(&steps).map(stand).collect()
     }
 
     /// What errors cost: where the mean curve, straight between its points in logarithms, first gets there and stays.
@@ -182,7 +184,7 @@ fn price(stands: &[Stand], relmse: f64, never: bool) -> Price {
         None => stands.first().map_or(nothing, |first| found(first.cpu, first.wall, How::Measured)),
         Some(before) if before + 1 < stands.len() => {
             let (a, b) = (stands[before], stands[before + 1]);
-            let part = (a.relmse / relmse).ln() / (a.relmse / b.relmse).ln();
+            let part = if b.relmse > 0.0 { (a.relmse / relmse).ln() / (a.relmse / b.relmse).ln() } else { 1.0 };
             let between = |a: f64, b: f64| a * (b / a).powf(part);
             found(between(a.cpu, b.cpu), between(a.wall, b.wall), How::Measured)
         }
@@ -200,7 +202,8 @@ fn price(stands: &[Stand], relmse: f64, never: bool) -> Price {
 
 /// Who overtakes whom for good, and when, in words.
 pub fn crossings(methods: &[Method]) -> Vec<String> {
-    let curves: Vec<_> = methods.iter().map(|method| (method.name, method.stands())).collect();
+    let curve = |method: &Method| method.stands().into_iter().filter(|stand| stand.relmse > 0.0).collect::<Vec<_>>();
+    let curves: Vec<_> = methods.iter().map(|method| (method.name, curve(method))).collect();
     let mut all: Vec<(f64, String)> = Vec::new();
     for (i, (first, a)) in curves.iter().enumerate() {
         for (second, b) in &curves[i + 1..] {
@@ -270,7 +273,8 @@ mod tests {
         assert_eq!([of(0.15).how, of(0.01).how], [How::Measured, How::Extrapolated]);
         assert_eq!(price(&curve, 0.01, true).cpu, None);
         close(price(&curve, 0.15, true).cpu, 4.0 * 0.1 / 0.15);
-        assert_eq!(price(&[], 0.1, false).how, How::Never);
+        // Below the reference's noise: there at that point, as far as can be told.
+        close(price(&stands(1.0, &[0.4, 0.2, -0.01]), 0.1, false).cpu, 4.0);
     }
 
     #[test]

@@ -25,7 +25,7 @@ pub struct Header {
     pub version: String,
     /// The scene's text, what is defined in it, and how deep paths go, as a digest.
     pub scene: String,
-    /// The whole image, in pixels.
+    /// Of the image, in pixels.
     pub size: [u32; 2],
     /// Render threads.
     pub threads: usize,
@@ -56,7 +56,7 @@ pub enum Entry {
         stage: Stage,
         /// In words.
         card: Vec<String>,
-        /// CPU seconds of a sample of every technique once, of all pixels.
+        /// Wall-clock seconds of a sample of every technique once, of all pixels.
         pace: f64,
     },
     /// A render of a method.
@@ -105,8 +105,8 @@ impl Journal {
         let mut lines = known.iter().flat_map(|text| text.lines());
         let same = lines.next().and_then(|line| serde_json::from_str::<Header>(line).ok()).is_some_and(|known| known == *header);
         if same {
-            // The last line may have been cut off.
-            let entries = lines.map_while(|line| serde_json::from_str(line).ok()).collect();
+            // The last line may have been cut off; what cannot be read is measured again.
+            let entries = lines.filter_map(|line| serde_json::from_str(line).ok()).collect();
             let journal = Self { file, entries };
             journal.rewrite(header)?;
             return Ok(journal);

@@ -45,8 +45,8 @@ pub struct Setting {
     pub relmse: f64,
     /// The same, trimmed.
     pub trimmed: f64,
-    /// 1 / (relMSE · CPU seconds).
-    pub efficiency: f64,
+    /// 1 / (relMSE · CPU seconds); `None` where the error is too small to be told.
+    pub efficiency: Option<f64>,
     /// Of the mean, as a share of the reference's.
     pub bias: Bias,
     /// Whether no other setting of any knob has a smaller error in less time.
@@ -62,7 +62,7 @@ pub struct Turn {
     /// Whether it is where it was.
     pub base: bool,
     /// Why the image is then another one.
-    pub declared: Option<&'static str>,
+    pub declared: Option<String>,
     /// What is sampled.
     pub stage: Stage,
     change: Change,
@@ -99,13 +99,9 @@ const WORDS: [(&str, &str); 10] = [
 pub fn turns(subject: &Subject, base: &Stage, sandboxed: Option<(Description, Scene)>) -> Vec<Turn> {
     let integrator = &subject.description.integrator;
     let mut all = Vec::new();
-    let turn = |knob, setting: String, base_setting: bool, declared, stage: Stage, change| Turn {
-        knob,
-        setting,
-        base: base_setting,
-        declared,
-        stage,
-        change,
+    let turn = |knob, setting: String, base_setting: bool, declared: Option<&str>, stage: Stage, change| {
+        let declared = declared.map(str::to_owned).or_else(|| subject.missed(&stage));
+        Turn { knob, setting, base: base_setting, declared, stage, change }
     };
     let same = |knob, setting: &str, base_setting, change| turn(knob, setting.to_owned(), base_setting, None, *base, change);
 
@@ -133,12 +129,12 @@ pub fn turns(subject: &Subject, base: &Stage, sandboxed: Option<(Description, Sc
     }
     for count in [0.0, 0.25, 0.5, 1.0, 2.0] {
         let share = if walks > 0.0 { base.connection / walks } else { 0.0 };
-        let stage = counted(Stage { lens_splat: count, lens_hit: count, connection: count.min(1.0) * share, ..*base });
-        all.push(turn("light paths", count.to_string(), count == walks, None, stage, Change::Nothing));
+        let stage = counted(Stage { lens_splat: count, lens_hit: count, connection: count * share, ..*base });
+        let is_base = stage.techniques() == base.techniques();
+        all.push(turn("light paths", count.to_string(), is_base, None, stage, Change::Nothing));
     }
-    let some = if walks > 0.0 { walks } else { 1.0 };
-    for share in [0.0, 0.25, 0.5, 1.0] {
-        let stage = counted(Stage { lens_splat: some, lens_hit: some, connection: share * some.min(1.0), ..*base });
+    for share in [0.0, 0.25, 0.5, 1.0].into_iter().filter(|_| walks > 0.0) {
+        let stage = counted(Stage { connection: share * walks, ..*base });
         let is_base = stage.techniques() == base.techniques();
         all.push(turn("connections", share.to_string(), is_base, None, stage, Change::Nothing));
     }
@@ -220,15 +216,15 @@ pub fn setting(turn: &Turn, runs: &[Snapshot], reference: &Reference) -> Option<
         cpu,
         relmse,
         trimmed: mean(&|run| run.errors.trimmed),
-        efficiency: 1.0 / (relmse.max(f64::MIN_POSITIVE) * cpu.max(f64::MIN_POSITIVE)),
-        bias: Bias { interval: reference.interval(&biases, spp), declared: turn.declared.map(str::to_owned) },
+        efficiency: (relmse > 0.0 && cpu > 0.0).then(|| 1.0 / (relmse * cpu)),
+        bias: Bias { interval: reference.interval(&biases, spp), declared: turn.declared.clone() },
         pareto: false,
     })
 }
 
 /// Puts settings, each of as many samples, to their knobs, and marks those that no other beats in both error and time.
 pub fn together(settings: Vec<(&'static str, Setting)>) -> Vec<Knob> {
-    let all: Vec<[f64; 2]> = settings.iter().map(|(_, s)| [s.relmse, s.cpu]).collect();
+    let all: Vec<[f64; 2]> = settings.iter().map(|(_, s)| [s.relmse.max(0.0), s.cpu]).collect();
     let beaten = |[error, time]: [f64; 2]| all.iter().any(|[e, t]| *e <= error && *t <= time && (*e < error || *t < time));
     let mut knobs: Vec<Knob> = WORDS.iter().map(|(knob, words)| Knob { knob, words, settings: Vec::new() }).collect();
     for ((knob, setting), figures) in settings.into_iter().zip(all.clone()) {

@@ -41,7 +41,7 @@ use crate::{
         Image,
         write::{self, Layers},
     },
-    plan::{Named, Plan, Stage, gaps::gaps, words},
+    plan::{Named, Plan, Stage, words},
     render::{Always, Auto, Director, Given, Target},
     scene::{Scene, description::Description},
 };
@@ -62,8 +62,9 @@ const SAMPLES: f64 = 8.0;
 const SETTING_SEEDS: u64 = 4;
 /// A setting takes about so many times as long as the base, in the mean.
 const DEARER: f64 = 2.2;
-/// Seeds of the reference's halves, far from those of what is measured.
+/// Seeds of the reference's halves and of what is measured, far from each other and from those that a reference is rendered with by hand.
 const HALVES: u64 = 1 << 40;
+const MEASURED: u64 = 1 << 41;
 
 /// What is to be done.
 #[derive(Clone, Debug)]
@@ -95,8 +96,10 @@ pub struct Report {
     pub budget: f64,
     /// Seconds that it took.
     pub spent: f64,
-    /// Whether something is missing.
+    /// Whether something is missing that the same command would go on with.
     pub interrupted: bool,
+    /// Whether something is missing for want of time.
+    pub out_of_time: bool,
     /// Renders of each method.
     pub seeds: u64,
     /// How sure intervals are.
@@ -192,7 +195,8 @@ pub fn measure(
     };
     let journal = Journal::open(&settings.folder, &header)?;
     let before = journal.spent();
-    let mut work = Work { subject, settings, interrupt, progress, journal, start: Instant::now(), before, cut_off: false };
+    let mut work =
+        Work { subject, settings, interrupt, progress, journal, start: Instant::now(), before, cut_off: false, out_of_time: false };
     let result = work.everything(sandboxed);
     let spent = work.start.elapsed().as_secs_f64();
     work.journal.add(Entry::Spent(spent))?;
@@ -208,8 +212,10 @@ struct Work<'a> {
     start: Instant,
     /// Seconds that were spent before.
     before: f64,
-    /// Whether something could not be done.
+    /// Whether something is missing that the same command would go on with.
     cut_off: bool,
+    /// Whether there was no time for something.
+    out_of_time: bool,
 }
 
 impl Work<'_> {
@@ -227,8 +233,10 @@ impl Work<'_> {
         if may {
             let share = self.spent() / self.budget();
             (self.progress)(what, share);
-        } else {
+        } else if self.interrupt.load(Ordering::Relaxed) {
             self.cut_off = true;
+        } else {
+            self.out_of_time = true;
         }
         may
     }
@@ -244,7 +252,11 @@ impl Work<'_> {
         }
         report.reference = Some(Held { words: reference.words.clone(), given: reference.given, relmse: reference.relmse() });
         self.save("reference", &reference.image())?;
-        let Some((stage, card, pace)) = self.plan()? else { return Ok(report) };
+        report.images = self.images(&[], &reference);
+        let Some((stage, card, pace)) = self.plan()? else {
+            (report.interrupted, report.out_of_time) = (self.cut_off, self.out_of_time);
+            return Ok(report);
+        };
         report.plan = card;
         let slice = self.budget() * METHODS / f64::from(METHOD_NAMES.len() as u32);
         report.seeds = (slice / (SAMPLES * pace)).clamp(SEEDS[0], SEEDS[1]) as u64;
@@ -255,7 +267,7 @@ impl Work<'_> {
         report.pyramid = self.techniques(pace)?;
         report.knobs = self.knobs(&reference, &stage, sandboxed)?;
         report.images = self.images(&report.methods, &reference);
-        report.interrupted = self.cut_off;
+        (report.interrupted, report.out_of_time) = (self.cut_off, self.out_of_time);
         report.spent = self.spent();
         Ok(report)
     }
@@ -270,7 +282,8 @@ impl Work<'_> {
             threads: self.subject.threads,
             budget: self.budget(),
             spent: self.spent(),
-            interrupted: true,
+            interrupted: self.cut_off,
+            out_of_time: self.out_of_time,
             seeds: 0,
             confidence: interval::CONFIDENCE,
             reference: None,
@@ -341,6 +354,10 @@ impl Work<'_> {
         let stage = auto.plan().last().copied().unwrap_or(Stage::BIDIRECTIONAL);
         let card = auto.choice().map_or_else(|| vec![format!("auto: {}", words::stage(&stage))], words::card);
         let (_, status) = self.subject.render(&Stage::BIDIRECTIONAL, 0, Target::Samples(2), self.interrupt)?;
+        if status.interrupted {
+            self.cut_off = true;
+            return Ok(None);
+        }
         let pace = status.elapsed.as_secs_f64().max(1e-9) / f64::from(status.samples.max(1));
         self.journal.add(Entry::Plan { stage, card: card.clone(), pace })?;
         Ok(Some((stage, card, pace)))
@@ -362,13 +379,11 @@ impl Work<'_> {
                 self.method(name, seed, target, reference)?;
             }
         }
-        let max_depth = self.subject.description.integrator.max_depth;
         let methods = METHOD_NAMES.into_iter().filter_map(|name| {
             let runs = self.of_method(name.name());
             let (_, _, words) = runs.first()?.clone();
             let biases: Vec<f64> = runs.iter().filter_map(|(_, snapshots, _)| Some(snapshots.last()?.errors.bias)).collect();
-            let missing = name.stage().map(|stage| gaps(&self.subject.effects, &stage, max_depth)).unwrap_or_default();
-            let declared = missing.first().map(|gap| format!("it never finds {} from {}: {}", gap.class, gap.lights, gap.what));
+            let declared = name.stage().and_then(|stage| self.subject.missed(&stage));
             let samples = runs.iter().filter_map(|(_, snapshots, _)| snapshots.last()).map(|last| last.spp).min().unwrap_or(0);
             let points = curve::points(&runs.into_iter().map(|(seed, snapshots, _)| (seed, snapshots)).collect::<Vec<_>>());
             let bias = Bias { interval: reference.interval(&biases, samples), declared };
@@ -407,7 +422,7 @@ impl Work<'_> {
         target: Target,
         reference: &Reference,
     ) -> Result<Option<subject::Run>> {
-        let run = self.subject.watch(&self.subject.manner(stage), director, seed, target, reference, self.interrupt)?;
+        let run = self.subject.watch(&self.subject.manner(stage), director, MEASURED + seed, target, reference, self.interrupt)?;
         self.cut_off |= run.status.interrupted;
         Ok((!run.status.interrupted).then_some(run))
     }
@@ -429,6 +444,7 @@ impl Work<'_> {
         let samples = (APART * self.budget() / (spent::RENDERS * pace)).clamp(1.0, 4096.0) as u32;
         let time = spent::spent(self.subject, stage, samples, self.interrupt)?;
         if self.interrupt.load(Ordering::Relaxed) {
+            self.cut_off = true;
             return Ok(None);
         }
         self.journal.add(Entry::Time(time.clone()))?;
@@ -445,7 +461,11 @@ impl Work<'_> {
             return Ok(None);
         }
         let samples = (APART * self.budget() / pace).clamp(1.0, 256.0) as u32;
-        let all = techniques::apart(self.subject, samples, self.interrupt);
+        let all = techniques::apart(self.subject, samples, self.interrupt)?;
+        if self.interrupt.load(Ordering::Relaxed) {
+            self.cut_off = true;
+            return Ok(None);
+        }
         self.journal.add(Entry::Techniques(all.clone()))?;
         Ok(all)
     }
@@ -459,11 +479,14 @@ impl Work<'_> {
             _ => None,
         });
         let mut settings = Vec::new();
+        // The base of every knob is the same.
+        let mut base_runs: Option<Vec<Snapshot>> = None;
         for turn in &turns {
             let known = self.journal.entries().iter().find_map(|entry| match entry {
                 Entry::Setting { knob, setting, runs } if knob == turn.knob && *setting == turn.setting => Some(runs.clone()),
                 _ => None,
             });
+            let known = known.or_else(|| base_runs.clone().filter(|_| turn.base));
             let runs = match known {
                 Some(runs) => runs,
                 None => {
@@ -479,6 +502,9 @@ impl Work<'_> {
                     runs
                 }
             };
+            if turn.base {
+                base_runs = Some(runs.clone());
+            }
             settings.extend(knobs::setting(turn, &runs, reference).map(|setting| (turn.knob, setting)));
         }
         Ok(knobs::together(settings))
@@ -489,7 +515,7 @@ impl Work<'_> {
         let runs = turn.render(subject, |manner| {
             let mut runs = Vec::new();
             for seed in 0..SETTING_SEEDS {
-                let run = subject.watch(manner, &mut Always, seed, Target::Samples(samples), reference, interrupt)?;
+                let run = subject.watch(manner, &mut Always, MEASURED + seed, Target::Samples(samples), reference, interrupt)?;
                 runs.extend(run.snapshots.last().filter(|_| !run.status.interrupted).copied());
             }
             Ok(runs)

@@ -7,7 +7,7 @@ use bidir_kernel::{Contribution, Film as _, Spectrum, Technique, Techniques, Vec
 use cpu_time::{ProcessTime, ThreadTime};
 use serde::{Deserialize, Serialize};
 
-use super::subject::Subject;
+use super::subject::{Subject, whole};
 use crate::{
     error::Result,
     film::{Exposure, Film, Store},
@@ -63,7 +63,7 @@ struct Cost {
 /// Takes a plan's render apart: so many samples per pixel, with a pilot such as `auto` would send ahead.
 ///
 /// # Errors
-/// If the film cannot be made.
+/// If the film cannot be made, or a plugin broke off.
 pub fn spent(subject: &Subject, stage: &Stage, samples: u32, interrupt: &Arc<AtomicBool>) -> Result<Spent> {
     let techniques = stage.techniques();
     let Techniques { light_hit, next_event, connection, lens_splat, lens_hit } = techniques;
@@ -71,13 +71,15 @@ pub fn spent(subject: &Subject, stage: &Stage, samples: u32, interrupt: &Arc<Ato
         let some = techniques.camera_walk() || techniques.light_walk();
         if some { cost(subject, &Stage::of(&techniques), samples, interrupt) } else { Ok(Cost::default()) }
     };
-    let whole = of(techniques)?;
+    let all = of(techniques)?;
     let bare = of(Techniques { light_hit, ..Techniques::NONE })?;
     let path = of(Techniques { light_hit, next_event, ..Techniques::NONE })?;
     let shown = of(Techniques { lens_splat, lens_hit, ..Techniques::NONE })?;
     let walk = of(Techniques { lens_hit, ..Techniques::NONE })?;
     let unconnected = of(Techniques { connection: 0.0, ..techniques })?;
-    let connected = of(Techniques { connection, ..Techniques::NONE })?;
+    // With the same light walks, or other pairs would be joined.
+    let connected = of(Techniques { light_hit: 0.0, next_event: 0.0, ..techniques })?;
+    let joins = connected.rays.any.saturating_sub(shown.rays.any);
     let film = film(subject, samples)?;
     let (pilot, plugins) = pilot(subject, stage, samples);
 
@@ -88,7 +90,8 @@ pub fn spent(subject: &Subject, stage: &Stage, samples: u32, interrupt: &Arc<Ato
     if techniques.camera_walk() {
         let calls = plugins.camera_path.min(path.seconds);
         let left = 1.0 - calls / path.seconds.max(f64::MIN_POSITIVE);
-        let alone = if next_event > 0.0 { bare.seconds.min(path.seconds) } else { path.seconds };
+        // Where no light can be landed on, nobody walks for that alone.
+        let alone = if next_event > 0.0 && bare.rays.closest > 0 { bare.seconds.min(path.seconds) } else { path.seconds };
         part("camera walk", left * alone - film, rays(path.rays.closest, 0));
         part("next event", left * (path.seconds - alone), rays(0, path.rays.any));
     }
@@ -100,18 +103,14 @@ pub fn spent(subject: &Subject, stage: &Stage, samples: u32, interrupt: &Arc<Ato
         part("lens splat", left * (shown.seconds - alone), rays(0, shown.rays.any));
     }
     if connection > 0.0 {
-        part("connections", whole.seconds - unconnected.seconds - plugins.connections, rays(0, connected.rays.any));
+        part("connections", all.seconds - unconnected.seconds - plugins.connections, rays(0, joins));
     }
     let calls = plugins.camera_path + plugins.light_path + plugins.connections;
     let rayless = [("plugins", calls), ("film", film), ("plan", pilot)];
     parts.extend(rayless.map(|(name, seconds)| Part { name: name.to_owned(), seconds, rays: None }));
     parts.retain(|part| part.seconds > 0.0 || part.rays.is_some_and(|rays| rays != RayCounts::default()));
-    let predicted = rays(path.rays.closest + shown.rays.closest, path.rays.any + shown.rays.any + connected.rays.any);
-    Ok(Spent {
-        words: format!("{}, {samples} samples per pixel", words::stage(stage)),
-        parts,
-        rays: Rays { counted: whole.rays, predicted },
-    })
+    let predicted = rays(path.rays.closest + shown.rays.closest, path.rays.any + shown.rays.any + if connection > 0.0 { joins } else { 0 });
+    Ok(Spent { words: format!("{}, {samples} samples per pixel", words::stage(stage)), parts, rays: Rays { counted: all.rays, predicted } })
 }
 
 /// A render of some techniques: the same numbers each time, so the same rays.
@@ -122,6 +121,7 @@ fn cost(subject: &Subject, stage: &Stage, samples: u32, interrupt: &Arc<AtomicBo
         let film = Film::new(&subject.description.film)?;
         let job = subject.job(&manner, 0, Target::Samples(samples));
         let status = render::directed(&subject.scene, &film, &job, &mut Always, interrupt, |_| None);
+        whole(&status)?;
         best = Cost { seconds: best.seconds.min(status.cpu.as_secs_f64()), rays: status.rays };
     }
     Ok(best)

@@ -11,10 +11,10 @@ use serde::{Deserialize, Serialize};
 
 use super::reference::{Errors, Reference};
 use crate::{
-    error::Result,
+    error::{Error, Result},
     film::Film,
     image::Image,
-    plan::{Stage, effects::Effects},
+    plan::{Stage, effects::Effects, gaps::gaps},
     plugin::Strictness,
     render::{self, Director, Job, Numbers, Status, Target},
     scene::{Scene, description::Description},
@@ -109,10 +109,14 @@ impl Subject {
         let film = Film::new(&self.description.film)?;
         let job = self.job(&self.manner(stage), seed, target);
         let status = render::render(&self.scene, &film, &job, interrupt, |_| None);
-        match &status.fault {
-            Some(fault) => Err(fault.clone().into()),
-            None => Ok((film.develop(), status)),
-        }
+        whole(&status)?;
+        Ok((film.develop(), status))
+    }
+
+    /// What a plan is known to miss in the scene.
+    pub fn missed(&self, stage: &Stage) -> Option<String> {
+        let gaps = gaps(&self.effects, stage, self.description.integrator.max_depth);
+        gaps.first().map(|gap| format!("it never finds {} from {}: {}", gap.class, gap.lights, gap.what))
     }
 
     /// Renders, and looks at the picture whenever its samples have doubled; what looking takes is in no time.
@@ -151,13 +155,20 @@ impl Subject {
         if status.samples > looked && status.fault.is_none() {
             look(&film, status.samples, &mut clock);
         }
-        if let Some(fault) = &status.fault {
-            return Err(fault.clone().into());
-        }
+        whole(&status)?;
         match failed {
             Some(error) => Err(error),
             None => Ok(Run { snapshots, image: film.develop(), status }),
         }
+    }
+}
+
+/// An error if a plugin broke off, or a render thread broke down.
+pub(super) fn whole(status: &Status) -> Result<()> {
+    match &status.fault {
+        Some(fault) => Err(fault.clone().into()),
+        None if status.failed => Err(Error::new("a render thread broke down", "this is a bug; please report it")),
+        None => Ok(()),
     }
 }
 

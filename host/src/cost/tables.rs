@@ -52,7 +52,7 @@ pub(super) fn knobs(report: &Report) -> String {
                 one.cpu,
                 one.relmse,
                 one.trimmed,
-                one.efficiency,
+                number(one.efficiency),
                 bias.value,
                 number(bias.low),
                 number(bias.high),

@@ -4,9 +4,10 @@ use std::sync::{Arc, atomic::AtomicBool};
 
 use serde::{Deserialize, Serialize};
 
-use super::subject::Subject;
+use super::subject::{Subject, whole};
 use crate::{
     check::page::png,
+    error::Result,
     film::{
         Pyramid,
         picture::{self, Deciding},
@@ -48,15 +49,16 @@ pub struct Apart {
 }
 
 /// All techniques that there are in the scene; `None` where its film is too large for that.
-pub fn apart(subject: &Subject, samples: u32, interrupt: &Arc<AtomicBool>) -> Option<Techniques> {
+///
+/// # Errors
+/// If a plugin broke off.
+pub fn apart(subject: &Subject, samples: u32, interrupt: &Arc<AtomicBool>) -> Result<Option<Techniques>> {
     let longest = LONGEST.min(subject.description.integrator.max_depth.unwrap_or(LONGEST)).max(1);
-    let pyramid = Pyramid::new(&subject.description.film, longest).ok()?;
+    let Ok(pyramid) = Pyramid::new(&subject.description.film, longest) else { return Ok(None) };
     let mut manner = subject.manner(&Stage::BIDIRECTIONAL);
     manner.strategy.max_depth = longest;
     let job = subject.job(&manner, 0, Target::Samples(samples));
-    if render::render(&subject.scene, &pyramid, &job, interrupt, |_| None).samples == 0 {
-        return None;
-    }
+    whole(&render::render(&subject.scene, &pyramid, &job, interrupt, |_| None))?;
     let there: Vec<_> = pyramid.techniques().filter(|&technique| exists(&subject.effects, technique)).collect();
     let images: Vec<[Image; 2]> = there.iter().map(|&technique| pyramid.develop(technique)).collect();
     let small = |image: &Image| {
@@ -83,7 +85,7 @@ pub fn apart(subject: &Subject, samples: u32, interrupt: &Arc<AtomicBool>) -> Op
         weighted: uri(0, index),
         unweighted: uri(1, index),
     });
-    Some(Techniques { longest, techniques: techniques.collect() })
+    Ok(Some(Techniques { longest, techniques: techniques.collect() }))
 }
 
 fn mean(image: &Image) -> f64 {
