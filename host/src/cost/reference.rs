@@ -185,7 +185,9 @@ mod tests {
         };
         let reference = Reference::rendered([noisy(1.0), flat(1.0)], 8, String::new());
         let errors = reference.errors(&flat(1.2)).unwrap();
-        assert!((errors.relmse - 0.04 / 1.01).abs() < 1e-3, "{errors:?}");
+        // (1.2 − 1.1)(1.2 − 1) where r is 1.05, and (1.2 − 0.9)(1.2 − 1) where it is 0.95.
+        let expected = 0.5 * (0.02 / (1.05 * 1.05 + 0.01) + 0.06 / (0.95 * 0.95 + 0.01));
+        assert!((errors.relmse - expected).abs() < 1e-6, "{errors:?}");
         assert!((errors.bias - 0.2).abs() < 1e-6 && errors.fireflies == 0.0);
         assert!((reference.relmse().unwrap() - 0.0025 / 1.01).abs() < 1e-5);
         assert!(reference.doubt() < 1e-6);
