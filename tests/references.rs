@@ -25,10 +25,7 @@ fn folder(name: &str) -> PathBuf {
 }
 
 fn halves(name: &str) -> [Image; 2] {
-    ["reference.a.exr", "reference.b.exr"].map(|file| {
-        let pixels = read::read(&folder(name).join(file), read::Encoding::Linear).expect("a reference");
-        Image { width: pixels.width, height: pixels.height, pixels: pixels.values.into_iter().map(|value| value.0).collect() }
-    })
+    ["reference.a.exr", "reference.b.exr"].map(|file| read::picture(&folder(name).join(file)).expect("a reference"))
 }
 
 /// Blocks of 16×16.

@@ -346,8 +346,7 @@ fn samples(seconds: f64, pace: f64) -> u32 {
 }
 
 fn picture(file: &Path) -> Image {
-    let pixels = read::read(file, read::Encoding::Linear).expect("a reference");
-    Image { width: pixels.width, height: pixels.height, pixels: pixels.values.into_iter().map(|value| value.0).collect() }
+    read::picture(file).expect("a reference")
 }
 
 struct Random(u64);

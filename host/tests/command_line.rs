@@ -81,8 +81,7 @@ fn text(bytes: &[u8]) -> String {
 }
 
 fn image(path: &Path) -> Image {
-    let pixels = read::read(path, read::Encoding::Srgb).expect("an image");
-    Image { width: pixels.width, height: pixels.height, pixels: pixels.values.into_iter().map(|value| value.0).collect() }
+    read::picture(path).expect("an image")
 }
 
 fn film(content: &str) -> String {

@@ -17,7 +17,7 @@ use crate::{
         arguments::{Cost, SceneArguments},
         interrupt,
         progress::Stages,
-        render::{library, read, strictness, thread_count, verbosity},
+        render::{library, limited, read, strictness, thread_count, verbosity},
     },
     cost::{self, Settings, curve, page, subject::Subject},
     error::{Error, Result},
@@ -99,15 +99,18 @@ fn say(what: &str, share: f64) {
 /// The scene with modules for its built-in shaders; `None` if that makes no more than it has anyway.
 fn sandboxed(path: &Path, from: &SceneArguments, own: usize) -> Option<(Description, Scene)> {
     let library = library(from).instead_of_built_ins(&builtin::MODULES);
-    let mut description = load::load(path, &from.defines, &library).ok()?.description;
-    if let Some(depth) = from.max_depth {
-        description.integrator.max_depth = u32::try_from(depth).ok();
+    let built = load::load(path, &from.defines, &library).and_then(|loaded| {
+        let description = limited(loaded.description, from);
+        let scene = Scene::new(&description)?;
+        Ok((description, scene))
+    });
+    match built {
+        Ok((description, scene)) => (modules(&description) > own).then_some((description, scene)),
+        Err(error) => {
+            eprintln!("warning: the knob `plugins` is left out: {error}");
+            None
+        }
     }
-    if modules(&description) <= own {
-        return None;
-    }
-    let scene = Scene::new(&description).ok()?;
-    Some((description, scene))
 }
 
 /// How many shaders are modules.

@@ -50,11 +50,15 @@ pub(super) fn read(scene: Option<&Path>, from: &SceneArguments, stages: &mut Sta
     for warning in &loaded.warnings {
         eprintln!("warning: {warning}");
     }
-    let mut description = loaded.description;
+    Ok(limited(loaded.description, from))
+}
+
+/// With paths as long as the command line has them.
+pub(super) fn limited(mut description: Description, from: &SceneArguments) -> Description {
     if let Some(depth) = from.max_depth {
         description.integrator.max_depth = u32::try_from(depth).ok();
     }
-    Ok(description)
+    description
 }
 
 /// Where plugins are found.

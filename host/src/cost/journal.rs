@@ -121,6 +121,11 @@ impl Journal {
         &self.entries
     }
 
+    /// The first entry that something is made of.
+    pub fn find<T>(&self, of: impl FnMut(&Entry) -> Option<T>) -> Option<T> {
+        self.entries.iter().find_map(of)
+    }
+
     /// Seconds that were spent.
     pub fn spent(&self) -> f64 {
         self.entries.iter().filter_map(|entry| if let Entry::Spent(seconds) = entry { Some(*seconds) } else { None }).sum()

@@ -10,7 +10,7 @@ use super::{
 };
 use crate::{
     error::Result,
-    plan::{Stage, joins::possible, words},
+    plan::{Stage, joins::possible},
     rays::{Quality, Triangles},
     render::Numbers,
     scene::{
@@ -169,11 +169,6 @@ impl Turn {
     fn is_a_change(&self, base: &Stage) -> bool {
         let techniques = self.stage.techniques();
         !matches!(self.change, Change::Nothing) || techniques != base.techniques() && (techniques.camera_walk() || techniques.light_walk())
-    }
-
-    /// What is sampled, in words.
-    pub fn words(&self) -> String {
-        words::stage(&self.stage)
     }
 
     /// Calls `render` with the subject as the knob has it.

@@ -2,17 +2,16 @@
 
 use std::path::Path;
 
-use half::f16;
+use exr::prelude::f16;
 
 use super::{
-    Report,
-    reference::picture,
+    report::Report,
     tables::{errors, knobs, prices, time},
 };
 use crate::{
     check::page::markup::{base64, escaped},
     error::{Error, Result},
-    image::{Image, resize::resize},
+    image::{Image, read::picture, resize::resize},
     partial::Partial,
 };
 

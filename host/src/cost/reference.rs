@@ -1,22 +1,16 @@
 //! What pictures are held against: two independent halves.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
 use super::interval::Interval;
 
 use crate::{
-    compare::against_halves,
+    compare::{against_halves, compare},
     error::{Error, Result},
-    image::{
-        Image,
-        read::{Encoding, read},
-    },
+    image::{Image, read::picture},
 };
-
-/// Keeps a relative squared error finite in black pixels; relMSE's usual ε.
-const EPSILON: f64 = 0.01;
 
 /// The edge of a block, in pixels: the parts of a picture that are taken to be independent of each other.
 const BLOCK: u32 = 16;
@@ -113,19 +107,10 @@ impl Reference {
         Ok(Errors { relmse, trimmed, smape, bias, fireflies })
     }
 
-    /// r's own relMSE: (a − b)/2 is as far from 0 as r is from the truth. `None` where there are no two halves.
+    /// r's own relMSE: a is as far from r as r is from the truth. `None` where there are no two halves.
     pub fn relmse(&self) -> Option<f64> {
-        let of = |(a, b): (&[f32; 3], &[f32; 3])| {
-            let part = |i: usize| {
-                let (a, b) = (f64::from(a[i]), f64::from(b[i]));
-                let (difference, middle) = (0.5 * (a - b), 0.5 * (a + b));
-                difference * difference / (middle * middle + EPSILON)
-            };
-            (part(0) + part(1) + part(2)) / 3.0
-        };
-        let [a, b] = &self.halves;
-        let sum: f64 = a.pixels.iter().zip(&b.pixels).map(of).sum();
-        (self.independent && !a.pixels.is_empty()).then(|| sum / a.pixels.len() as f64)
+        let found = compare(&self.halves[0], &self.image()).ok().filter(|_| self.independent);
+        found.map(|found| found.relmse)
     }
 
     /// How biased pictures of so many samples per pixel each are that have these biases. They are taken to be at least as noisy as the
@@ -159,12 +144,6 @@ impl Reference {
         let squares: f64 = blocks.iter().map(|block: &f64| block * block).sum();
         if sum > 0.0 { squares.sqrt() / sum } else { 0.0 }
     }
-}
-
-/// A picture from its file.
-pub(super) fn picture(file: &Path) -> Result<Image> {
-    let pixels = read(file, Encoding::Linear)?;
-    Ok(Image { width: pixels.width, height: pixels.height, pixels: pixels.values.into_iter().map(|value| value.0).collect() })
 }
 
 #[cfg(test)]

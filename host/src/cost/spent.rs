@@ -27,7 +27,7 @@ pub(super) const RENDERS: f64 = 12.0;
 pub struct Spent {
     /// What was rendered.
     pub words: String,
-    /// Its parts, in CPU seconds; a part that cannot be told apart is in the one whose name it stands in.
+    /// Its parts, in CPU seconds; joins that cannot be timed apart from their walk are in it.
     pub parts: Vec<Part>,
     /// Rays of the whole, and of all its parts.
     pub rays: Rays,

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::{Report, curve::How};
+use super::{curve::How, report::Report};
 
 /// Error against time.
 pub(super) fn errors(report: &Report) -> String {

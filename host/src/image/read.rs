@@ -12,6 +12,7 @@ use bidir_kernel::Spectrum;
 use exr::prelude::{FlatSamples, Layer, MetaData, ReadChannels, ReadLayers, f16};
 use image::DynamicImage;
 
+use super::Image;
 use crate::error::{Error, Result};
 
 /// The most pixels that an image may have: 16384 × 8192.
@@ -70,6 +71,15 @@ pub fn read(path: &Path, encoding: Encoding) -> Result<Pixels> {
     }
     let bytes = std::fs::read(path).map_err(|e| fail(format!("cannot be read ({e})")))?;
     decode(&bytes, path, encoding, &Limits::default())
+}
+
+/// Reads a picture: what was written to be looked at, whole numbers with the sRGB curve.
+///
+/// # Errors
+/// As [`read`].
+pub fn picture(path: &Path) -> Result<Image> {
+    let Pixels { width, height, values } = read(path, Encoding::Srgb)?;
+    Ok(Image { width, height, pixels: values.into_iter().map(|value| value.0).collect() })
 }
 
 /// Decodes an image that is in memory already; messages call it `name`, whose ending counts where the bytes do not say what they are.
