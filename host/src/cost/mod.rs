@@ -1,7 +1,7 @@
 //! What accuracy costs in time: for a scene, how long each method takes to be good enough, and what each knob costs and brings.
 //!
 //! [`measure`] does everything within a budget and keeps what it has in a folder; [`page`] shows it. The parts serve others too:
-//! [`reference`] tells errors without the reference's own noise, [`subject`] watches a render's error as it goes on, [`curve`] tells
+//! [`mod@reference`] tells errors without the reference's own noise, [`subject`] watches a render's error as it goes on, [`curve`] tells
 //! prices and crossings, [`interval`] how sure a bias is, [`spent`] where a render's time goes.
 
 pub mod curve;
