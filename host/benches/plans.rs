@@ -28,7 +28,13 @@ use cpu_time::ProcessTime;
 /// Scenes of `examples/scenes` with references from elsewhere, at 128×128 pixels.
 const REFERENCED: [&str; 6] = ["cornell", "torchiere", "caustic_sphere", "veach_mis", "env_glossy", "dof_glossy"];
 /// Scenes that are rendered for long, at 64×64 pixels.
-const OWN: [&str; 8] = [
+const OWN: [&str; 14] = [
+    "examples/scenes/ajar.xml",
+    "examples/scenes/bulb.xml",
+    "examples/scenes/cove.xml",
+    "examples/scenes/lantern.xml",
+    "examples/scenes/ring.xml",
+    "examples/scenes/tank.xml",
     "examples/scenes/welcome.xml",
     "plugins/velvet/scene.xml",
     "plugins/thin_film/scene.xml",

@@ -93,6 +93,7 @@ impl<'s, S: Scene, P: Sampler, F: Film> CameraWalk<'_, 's, S, P, F> {
                     && let Some(id) = scene.environment()
                     && !(length == 1 && hides_emitters)
                 {
+                    let previous = previous.point();
                     let at = Point::distant(previous.position, -direction);
                     if S::EFFECTS.light_walks {
                         side = side.advance(heuristic, &step(&previous, &at, direction, way, instead));
@@ -106,9 +107,10 @@ impl<'s, S: Scene, P: Sampler, F: Film> CameraWalk<'_, 's, S, P, F> {
                 return stored;
             };
             if S::EFFECTS.light_walks {
-                side = side.advance(heuristic, &step(&previous, &point, direction, way, instead));
+                side = side.advance(heuristic, &step(&previous.point(), &point, direction, way, instead));
             }
             if let Some(id) = scene.light_id_at(hit) {
+                let previous = previous.point();
                 let side = Self::arrived(side, heuristic, || step(&previous, &point, direction, way, instead));
                 let joined = length <= self.joined_length;
                 self.light_hit(id, &point, &previous, direction, way.2, &End { side: &side, throughput, length, joined });

@@ -54,11 +54,10 @@ impl Point {
         Self { position, normal: inward, frame: Frame::from_z(inward), uv: Vec2::ZERO, offset: Real::INFINITY, place: Place::Distant }
     }
 
-    /// As much of it as a light may ask of a receiver: position, geometric normal and place.
+    /// As much of it as a light may ask of a receiver.
     #[inline(always)]
-    pub(crate) fn as_receiver(&self) -> Self {
-        let frame = Frame { x: Vec3::ZERO, y: Vec3::ZERO, z: self.normal };
-        Self { position: self.position, normal: self.normal, frame, uv: Vec2::ZERO, offset: 0.0, place: self.place }
+    pub(crate) fn as_receiver(&self) -> Receiver {
+        Receiver { position: self.position, normal: self.normal, place: self.place }
     }
 
     /// Whether directions at this point are measured against a surface.
@@ -97,6 +96,23 @@ impl Point {
         }
         let out = if dot(direction, self.normal) < 0.0 { -self.offset } else { self.offset };
         self.position + self.normal * out
+    }
+}
+
+/// What a walk keeps of the point it left: all that a light may ask of a receiver.
+#[derive(Clone, Copy)]
+pub(crate) struct Receiver {
+    pub position: Vec3,
+    normal: Vec3,
+    place: Place,
+}
+
+impl Receiver {
+    /// The point again, but for what no light asks.
+    #[inline(always)]
+    pub fn point(&self) -> Point {
+        let Self { position, normal, place } = *self;
+        Point { position, normal, frame: Frame { x: Vec3::ZERO, y: Vec3::ZERO, z: normal }, uv: Vec2::ZERO, offset: 0.0, place }
     }
 }
 

@@ -53,11 +53,12 @@ impl<'s, S: Scene + 's> Vertex<'s, S> {
     #[inline(always)]
     pub fn local(&self, toward: Vec3) -> Option<Vec3> {
         let wi = self.point.frame.to_local(toward);
-        if !same_side::<S>(&self.point, toward, wi.z) {
+        if S::EFFECTS.shading_normals && !self.point.same_side(toward) {
             return None;
         }
-        let lobes = if wi.z * self.wo.z > 0.0 { Lobe::SMOOTH_REFLECTION } else { Lobe::SMOOTH_TRANSMISSION };
-        self.lobes.intersects(lobes).then_some(wi)
+        let cosines = wi.z * self.wo.z;
+        let lobes = if cosines > 0.0 { Lobe::SMOOTH_REFLECTION } else { Lobe::SMOOTH_TRANSMISSION };
+        (self.lobes.intersects(lobes) && cosines.abs() > 0.0).then_some(wi)
     }
 
     /// What the smooth lobes answered towards `toward`, the adjoint factor of the shading normal included.
@@ -93,7 +94,7 @@ impl<'s, S: Scene + 's> Vertex<'s, S> {
     fn gone_on(&self, sampled: Scattered) -> Option<Bounce> {
         let Scattered { wi, weight, made, eta, .. } = sampled;
         let direction = self.point.frame.to_world(wi);
-        if weight.is_black() || !same_side::<S>(&self.point, direction, dot(direction, self.point.frame.z)) {
+        if weight.is_black() || !same_side::<S>(&self.point, direction, dot(direction, self.point.normal)) {
             return None;
         }
         let weight = if self.carried == Carried::Importance { weight * self.adjoint(direction) } else { weight };
@@ -125,7 +126,7 @@ impl<'s, S: Scene + 's> Vertex<'s, S> {
 /// Whether the unit direction `w`, whose cosine to the shading normal is `cos`, lies on the same side of both normals.
 #[inline(always)]
 fn same_side<S: Scene>(point: &Point, w: Vec3, cos: Real) -> bool {
-    if S::EFFECTS.shading_normals { point.same_side(w) } else { cos * cos > 0.0 }
+    if S::EFFECTS.shading_normals { point.same_side(w) } else { cos < 0.0 || cos > 0.0 }
 }
 
 /// The numbers of a vertex's BSDF, to whose dimension the sampler has gone.

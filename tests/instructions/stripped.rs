@@ -50,7 +50,7 @@ impl<'a> Stripped<'a> {
         let Seat::Shape(LightExtent::Parallelogram(rectangle)) = &light.seat else { return None };
         let ProfileSource::Area(profile) = &light.profile else { return None };
         let seen =
-            |shape| Some((scene.finish_of(shape).matt().filter(|matt| matt.behind > 0.0)?.shader.reflectance, shape.light.is_some()));
+            |shape| Some((scene.finish_of(shape).matt().filter(|matt| !matt.both_sides())?.shader.reflectance, shape.light.is_some()));
         let integrator = &description.integrator;
         Some(Self {
             scene,

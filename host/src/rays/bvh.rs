@@ -64,7 +64,6 @@ pub enum Triangles {
 pub(super) type Trail = [u32; LEVELS];
 
 impl Geometry for Bvh {
-    #[inline]
     fn closest(&self, ray: &Ray) -> Option<RayHit> {
         let probe = &Probe::new(ray, &self.bounds, self.some_hidden)?;
         let mut trail = [0; LEVELS];
@@ -78,7 +77,6 @@ impl Geometry for Bvh {
         Some(RayHit { t, primitive: PrimitiveId(key.primitive()), coordinates, slot, trail })
     }
 
-    #[inline]
     fn occluded(&self, ray: &Ray) -> bool {
         Probe::new(ray, &self.bounds, self.some_hidden).is_some_and(|probe| self.cast::<true>(&probe, &mut [0; LEVELS]).is_some())
     }

@@ -110,6 +110,7 @@ impl<S: Store> Share<'_, S> {
         N::with_preset(self.scene, self.job.strategy.effects(), By::<_, N>(self, PhantomData))
     }
 
+    #[inline(always)]
     fn work<N: Source, P: Preset>(&self, view: &View<P>) -> Worked {
         let Self { film, job, end, stop, .. } = *self;
         let _guard = Guard(film);
@@ -130,7 +131,7 @@ impl<S: Store> Share<'_, S> {
                 let raster = Vec2::new(x as f32 + dx, y as f32 + dy);
                 buffer.begin(raster);
                 sample(view, &job.strategy, &mut numbers, raster, &mut camera_path, &mut light_path, &mut buffer);
-                if view.sandbox().faulted() {
+                if view.faulted() {
                     // Nothing of this tile is known to be whole. It is handed in empty, so that the tiles after it still arrive.
                     stop.faulted.store(true, Ordering::Relaxed);
                     buffer.clear();

@@ -13,6 +13,8 @@ use crate::scene::{
     surface::Finish,
 };
 
+const SIGN: u32 = 1 << 31;
+
 /// The parts of a plain scene.
 #[derive(Clone, Debug)]
 pub struct Parts {
@@ -31,8 +33,8 @@ pub type Lamp = AreaLight<Parallelogram, standard::Area>;
 pub struct Matt {
     /// Where the normal points.
     pub shader: standard::Diffuse,
-    /// −1 if it is the same behind, as if its normal pointed there; 1 if it is black there.
-    pub behind: Real,
+    /// The sign bit, if it is the same behind, as if its normal pointed there; 0 if it is black there.
+    behind: u32,
 }
 
 impl Parts {
@@ -47,7 +49,7 @@ impl Parts {
             return None;
         }
         // What no shape wears, no path meets.
-        let unworn = Matt { shader: standard::Diffuse { reflectance: Spectrum::BLACK }, behind: 1.0 };
+        let unworn = Matt::new(standard::Diffuse { reflectance: Spectrum::BLACK }, false);
         let surfaces = matt.into_iter().map(|matt| matt.unwrap_or(unworn)).collect();
         let lights = lights.sources().iter().map(lamp).collect::<Option<_>>()?;
         Some(Self { camera: Pinhole(*camera), surfaces, lights })
@@ -74,16 +76,27 @@ fn lamp(source: &LightSource) -> Option<Lamp> {
 }
 
 impl Matt {
-    /// −1 where z is to be turned round.
+    /// The same behind, or black there.
+    pub fn new(shader: standard::Diffuse, both_sides: bool) -> Self {
+        Self { shader, behind: if both_sides { SIGN } else { 0 } }
+    }
+
+    /// Whether it is the same behind.
+    pub fn both_sides(&self) -> bool {
+        self.behind != 0
+    }
+
+    /// The sign bit where z is to be turned round.
     #[inline(always)]
-    fn turn(&self, wo: Vec3) -> Real {
-        if wo.z >= 0.0 { 1.0 } else { self.behind }
+    fn turn(&self, wo: Vec3) -> u32 {
+        wo.z.to_bits() & self.behind
     }
 }
 
+/// z turned round or not. No branch: which side is seen cannot be foretold.
 #[inline(always)]
-fn turned(w: Vec3, turn: Real) -> Vec3 {
-    Vec3::new(w.x, w.y, w.z * turn)
+fn turned(w: Vec3, turn: u32) -> Vec3 {
+    Vec3::new(w.x, w.y, Real::from_bits(w.z.to_bits() ^ turn))
 }
 
 impl Bsdf for Matt {

@@ -18,6 +18,8 @@ use crate::{
 pub trait Preset: Copy {
     /// What may occur.
     const EFFECTS: Effects;
+    /// Whether plugins may be called.
+    const PLUGINS: bool;
     /// The camera.
     type Camera: Camera;
     /// A surface.
@@ -52,6 +54,7 @@ pub struct Plain<'a, const LIGHT_WALKS: bool>(&'a Parts);
 
 impl<const LIGHT_WALKS: bool> Preset for Any<LIGHT_WALKS> {
     const EFFECTS: Effects = Effects { light_walks: LIGHT_WALKS, ..Effects::ALL };
+    const PLUGINS: bool = true;
     type Camera = SceneCamera;
     type Bsdf<'v> = Surface<'v>;
     type Light<'v> = SceneLight<'v>;
@@ -74,6 +77,7 @@ impl<const LIGHT_WALKS: bool> Preset for Any<LIGHT_WALKS> {
 
 impl<'a, const LIGHT_WALKS: bool> Preset for Plain<'a, LIGHT_WALKS> {
     const EFFECTS: Effects = Effects { light_walks: LIGHT_WALKS, other_counts: LIGHT_WALKS, power_heuristic: LIGHT_WALKS, ..Effects::NONE };
+    const PLUGINS: bool = false;
     type Camera = bidir_kernel::camera::Pinhole;
     type Bsdf<'v>
         = Matt

@@ -115,34 +115,40 @@ impl Shape {
 
     #[inline(always)]
     fn turned(&self, at: &SurfacePoint, triangle: u32, turn: Option<&Turn>) -> Point {
+        if self.mapped || matches!(self.form, Form::Mesh(_)) {
+            return in_parts(&self.told_apart(at, triangle, turn));
+        }
         let normal = at.normal * self.facing;
-        let flat = |normal: Vec3, tangent: Vec3, uv: Vec2| {
-            let tangent = turn.map_or(tangent, |turn| turn.along * tangent);
-            let frame = if self.mapped { Frame::from_z_and_tangent(normal, tangent) } else { Frame::from_z(normal) };
-            Point::surface(at.position, normal, frame, uv, at.offset)
-        };
+        Point::surface(at.position, normal, Frame::from_z(normal), Vec2::ZERO, at.offset)
+    }
+
+    /// The point of a hit where more than the normal tells one from another: coordinates, a tangent, corners.
+    #[inline(never)]
+    fn told_apart(&self, at: &SurfacePoint, triangle: u32, turn: Option<&Turn>) -> Point {
         let local = at.local;
-        match &self.form {
-            Form::Parallelogram(tangent) => flat(normal, *tangent, Vec2::new(local.x, local.y)),
+        let (tangent, uv) = match &self.form {
+            Form::Parallelogram(tangent) => (*tangent, Vec2::new(local.x, local.y)),
             Form::Mesh(mesh) => {
                 let whole = turn.map(|turn| mesh.turn.then(turn));
-                in_parts(&mesh.point(at, triangle, self, whole.as_ref().unwrap_or(&mesh.turn)))
+                return mesh.point(at, triangle, self, whole.as_ref().unwrap_or(&mesh.turn));
             }
-            _ if !self.mapped => flat(normal, Vec3::ZERO, Vec2::ZERO),
             Form::Disk(x, y) => {
                 let radius = math::sqrt(local.x * local.x + local.y * local.y);
-                flat(normal, *x * local.x + *y * local.y, Vec2::new(radius, share_of_turn(local.y, local.x)))
+                (*x * local.x + *y * local.y, Vec2::new(radius, share_of_turn(local.y, local.x)))
             }
             Form::Sphere(axes) => {
                 let (uv, tangent) = round_mapping(axes, local);
-                flat(normal, tangent, uv)
+                (tangent, uv)
             }
             Form::Cylinder(axis) => {
                 // Normals go back by the transpose.
                 let out = turn.map_or(at.normal, |turn| turn.along.transpose() * at.normal);
-                flat(normal, axis.cross(out), Vec2::new(share_of_turn(local.y, local.x), local.z))
+                (axis.cross(out), Vec2::new(share_of_turn(local.y, local.x), local.z))
             }
-        }
+        };
+        let tangent = turn.map_or(tangent, |turn| turn.along * tangent);
+        let normal = at.normal * self.facing;
+        Point::surface(at.position, normal, Frame::from_z_and_tangent(normal, tangent), uv, at.offset)
     }
 }
 

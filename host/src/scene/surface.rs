@@ -287,13 +287,13 @@ impl Finish {
 
     /// The finish as a diffuse surface of one colour, if it is one.
     pub fn matt(&self) -> Option<Matt> {
-        let behind = match self.behind {
-            Behind::Itself => 1.0,
-            Behind::Mirrored => -1.0,
+        let both_sides = match self.behind {
+            Behind::Itself => false,
+            Behind::Mirrored => true,
             Behind::Other(_) => return None,
         };
         match self.front.shader {
-            Ready::Fixed(Shader::Diffuse(shader)) => Some(Matt { shader, behind }),
+            Ready::Fixed(Shader::Diffuse(shader)) => Some(Matt::new(shader, both_sides)),
             _ => None,
         }
     }

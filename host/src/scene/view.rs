@@ -71,6 +71,12 @@ impl<'a, P: Preset> View<'a, P> {
         &self.sandbox
     }
 
+    /// Whether a plugin has failed.
+    #[inline(always)]
+    pub fn faulted(&self) -> bool {
+        P::PLUGINS && self.sandbox.faulted()
+    }
+
     /// The rays cast through this view.
     pub fn rays(&self) -> RayCounts {
         RayCounts { closest: self.closest.get(), any: self.any.get() }
@@ -105,8 +111,9 @@ impl<'s, P: Preset> bidir_kernel::Scene for View<'s, P> {
     #[inline(always)]
     fn intersect(&self, ray: &Ray) -> Option<(Point, Hit<'s>)> {
         self.closest.set(self.closest.get() + 1);
-        let hit = self.scene.geometry.closest(ray)?;
-        let (point, shape) = self.scene.met_shape(ray, &hit);
+        // The hit is read where it lies: `?` would copy it.
+        let Some(hit) = &self.scene.geometry.closest(ray) else { return None };
+        let (point, shape) = self.scene.met_shape(ray, hit);
         Some((point, Hit { shape }))
     }
 

@@ -36,6 +36,8 @@ pub struct Lights {
 /// What next event chooses by.
 #[derive(Clone, Debug, Default)]
 enum NextEvent {
+    /// Nothing: there is but one light.
+    Only,
     /// What reaches the receiver from each light.
     #[default]
     Each,
@@ -63,7 +65,9 @@ impl Lights {
             }
         }
         lights.powers = Shares::new(&powers);
-        lights.next_event = if lights.sources.len() <= MOST_LOOKED_AT {
+        lights.next_event = if lights.sources.len() == 1 {
+            NextEvent::Only
+        } else if lights.sources.len() <= MOST_LOOKED_AT {
             NextEvent::Each
         } else if lights.sources.len() < Many::MOST {
             NextEvent::Clusters(Box::new(Many::new(&lights.sources)))
@@ -99,7 +103,7 @@ impl Lights {
     #[inline(always)]
     pub fn only(&self, lit: Option<&Point>) -> Option<(LightId, Chance)> {
         let near = lit.is_some_and(|lit| lit.place != Place::Distant);
-        (near && self.sources.len() == 1 && matches!(self.next_event, NextEvent::Each)).then_some((LightId(0), Chance(1.0)))
+        (near && matches!(self.next_event, NextEvent::Only)).then_some((LightId(0), Chance(1.0)))
     }
 
     /// Chooses a light for `lit`, or, without one, to start a light walk from. A receiver that is infinitely far away looks at none.
@@ -119,10 +123,8 @@ impl Lights {
     #[inline]
     pub fn chance(&self, id: LightId, lit: Option<&Point>, sandbox: &Sandbox) -> Chance {
         match (&self.next_event, lit) {
+            (NextEvent::Only, Some(lit)) if lit.place != Place::Distant => Chance(1.0),
             (NextEvent::Each, Some(lit)) if lit.place != Place::Distant => {
-                if self.sources.len() == 1 {
-                    return Chance(1.0);
-                }
                 let total: Real = self.sources.iter().map(|source| source.reaching(lit, sandbox)).sum();
                 Chance(if total > 0.0 { self.sources[id.0 as usize].reaching(lit, sandbox) / total } else { 0.0 })
             }
