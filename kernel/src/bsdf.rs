@@ -159,3 +159,30 @@ pub trait Bsdf {
         (self.eval(wo, wi, carried), self.sample(wo, u, carried))
     }
 }
+
+impl<B: Bsdf> Bsdf for &B {
+    #[inline(always)]
+    fn eval(&self, wo: Vec3, wi: Vec3, carried: Carried) -> Scatter {
+        (**self).eval(wo, wi, carried)
+    }
+
+    #[inline(always)]
+    fn sample(&self, wo: Vec3, u: [Real; 3], carried: Carried) -> Option<Scattered> {
+        (**self).sample(wo, u, carried)
+    }
+
+    #[inline(always)]
+    fn lobes(&self) -> Lobe {
+        (**self).lobes()
+    }
+
+    #[inline(always)]
+    fn eval_n(&self, wo: Vec3, wi: &[Vec3], carried: Carried, scatters: &mut [Scatter]) {
+        (**self).eval_n(wo, wi, carried, scatters);
+    }
+
+    #[inline(always)]
+    fn eval_and_sample(&self, wo: Vec3, wi: Vec3, u: [Real; 3], carried: Carried) -> (Scatter, Option<Scattered>) {
+        (**self).eval_and_sample(wo, wi, u, carried)
+    }
+}

@@ -123,7 +123,8 @@ impl<'s, S: Scene + 's> Vertex<'s, S> {
     }
 }
 
-/// Whether the unit direction `w`, whose cosine to the shading normal is `cos`, lies on the same side of both normals.
+/// Whether the unit direction `w` lies on the same side of both normals; `cos` is its cosine where they are one.
+#[allow(clippy::double_comparisons, reason = "what is no number lies on no side")]
 #[inline(always)]
 fn same_side<S: Scene>(point: &Point, w: Vec3, cos: Real) -> bool {
     if S::EFFECTS.shading_normals { point.same_side(w) } else { cos < 0.0 || cos > 0.0 }

@@ -25,7 +25,7 @@ use crate::{
     plan::effects::Effects,
     scene::{
         Scene,
-        description::{Description, EmitterKind, Material, ShapeLight},
+        description::{Description, EmitterKind, Material, PluginShader, ShapeLight},
     },
 };
 
@@ -40,8 +40,9 @@ pub(super) fn run(arguments: &Cost) -> Result<Outcome> {
         .map_err(|error| Error::in_file(folder, format!("the folder cannot be made: {error}"), "name one where you may write"))?;
     stages.building(&description);
     let scene = Scene::new(&description)?;
-    let sandboxed = sandboxed(&arguments.scene, &arguments.from, modules(&description));
+    let sandboxed = sandboxed(&arguments.scene, &arguments.from, modules(&description).len());
     stages.built();
+    let digest = digest(arguments, &description)?;
     let subject = Subject {
         name: arguments.scene.display().to_string(),
         effects: Effects::of(&description, &scene),
@@ -55,7 +56,7 @@ pub(super) fn run(arguments: &Cost) -> Result<Outcome> {
         folder: folder.clone(),
         budget: Duration::from_secs_f64(arguments.budget.min(1e9)),
         references: arguments.references.clone(),
-        digest: digest(&arguments.scene, &arguments.from)?,
+        digest,
     };
     let interrupt = interrupt::flag();
     let mut progress = |what: &str, share: f64| {
@@ -105,7 +106,7 @@ fn sandboxed(path: &Path, from: &SceneArguments, own: usize) -> Option<(Descript
         Ok((description, scene))
     });
     match built {
-        Ok((description, scene)) => (modules(&description) > own).then_some((description, scene)),
+        Ok((description, scene)) => (modules(&description).len() > own).then_some((description, scene)),
         Err(error) => {
             eprintln!("warning: the knob `plugins` is left out: {error}");
             None
@@ -113,20 +114,43 @@ fn sandboxed(path: &Path, from: &SceneArguments, own: usize) -> Option<(Descript
     }
 }
 
-/// How many shaders are modules.
-fn modules(description: &Description) -> usize {
-    let is_module = |kind: &EmitterKind| matches!(kind, EmitterKind::PluginPoint { .. } | EmitterKind::PluginEnvironment { .. });
-    description.materials.iter().filter(|material| matches!(material, Material::Plugin(_))).count()
-        + description.all_shapes().filter(|shape| matches!(shape.light, Some(ShapeLight::Plugin(_)))).count()
-        + description.emitters.iter().filter(|emitter| is_module(&emitter.kind)).count()
+/// The shaders that are modules.
+fn modules(description: &Description) -> Vec<&PluginShader> {
+    let materials = description.materials.iter().filter_map(|material| match material {
+        Material::Plugin(shader) => Some(shader),
+        _ => None,
+    });
+    let shining = description.all_shapes().filter_map(|shape| match &shape.light {
+        Some(ShapeLight::Plugin(shader)) => Some(shader),
+        _ => None,
+    });
+    let emitters = description.emitters.iter().filter_map(|emitter| match &emitter.kind {
+        EmitterKind::PluginPoint { shader, .. } | EmitterKind::PluginEnvironment { shader, .. } => Some(shader),
+        _ => None,
+    });
+    materials.chain(shining).chain(emitters).collect()
 }
 
-/// Of the scene's text and what is defined in it.
-fn digest(path: &Path, from: &SceneArguments) -> Result<String> {
-    let bytes = fs::read(path).map_err(|error| Error::in_file(path, format!("it cannot be read: {error}"), "name a scene"))?;
+/// Of all that what was measured depends on and that may be another the next time: the scene's text, what is defined in it, modules,
+/// references, this program.
+fn digest(arguments: &Cost, description: &Description) -> Result<String> {
+    let Cost { scene, from, references, .. } = arguments;
     let mut hash = Sha256::new();
-    hash.update(bytes);
-    hash.update(format!("{:?} {:?} {:?} {}", from.defines, from.max_depth, from.plugins, from.strict));
+    let mut add = |file: &Path| -> Result<()> {
+        let bytes = fs::read(file).map_err(|error| Error::in_file(file, format!("it cannot be read: {error}"), "see what became of it"))?;
+        hash.update(bytes.len().to_le_bytes());
+        hash.update(bytes);
+        Ok(())
+    };
+    add(scene)?;
+    references.iter().try_for_each(|file| add(file))?;
+    let mut files: Vec<_> = modules(description).iter().map(|shader| shader.module.file()).collect();
+    files.sort();
+    files.dedup();
+    files.into_iter().try_for_each(&mut add)?;
+    hash.update(format!("{:?} {:?} {}", from.defines, from.max_depth, from.strict));
+    let built = std::env::current_exe().and_then(fs::metadata).and_then(|program| Ok((program.len(), program.modified()?)));
+    hash.update(format!("{:?}", built.ok()));
     Ok(hash.finalize().iter().fold(String::new(), |mut text, byte| {
         let _ = write!(text, "{byte:02x}");
         text

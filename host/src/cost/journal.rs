@@ -23,7 +23,7 @@ const WHAT: &str = "journal";
 pub struct Header {
     /// Of this program.
     pub version: String,
-    /// The scene's text, what is defined in it, and how deep paths go, as a digest.
+    /// Of what was read for it, as a digest.
     pub scene: String,
     /// Of the image, in pixels.
     pub size: [u32; 2],

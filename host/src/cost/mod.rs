@@ -4,6 +4,7 @@
 //! [`mod@reference`] tells errors without the reference's own noise, [`subject`] watches a render's error as it goes on, [`curve`] tells
 //! prices and crossings, [`interval`] how sure a bias is, [`spent`] where a render's time goes.
 
+mod casts;
 pub mod curve;
 pub mod interval;
 pub mod journal;
@@ -31,6 +32,6 @@ pub struct Settings {
     pub budget: Duration,
     /// Pictures to hold others against: none, one, or two halves.
     pub references: Vec<PathBuf>,
-    /// A digest of what the scene was read from.
+    /// A digest of what was read for it: what was measured for another one is not gone on with.
     pub digest: String,
 }

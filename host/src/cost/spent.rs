@@ -7,7 +7,10 @@ use bidir_kernel::{Contribution, Film as _, Spectrum, Technique, Techniques, Vec
 use cpu_time::{ProcessTime, ThreadTime};
 use serde::{Deserialize, Serialize};
 
-use super::subject::{Subject, whole};
+use super::{
+    casts::{self, PerRay},
+    subject::{Subject, whole},
+};
 use crate::{
     error::Result,
     film::{Exposure, Film, Store},
@@ -40,6 +43,8 @@ pub struct Part {
     pub name: String,
     /// CPU seconds.
     pub seconds: f64,
+    /// How much of that its rays take; the rest is what is made of where they end.
+    pub tracing: f64,
     /// Its own rays.
     pub rays: Option<RayCounts>,
 }
@@ -82,32 +87,41 @@ pub fn spent(subject: &Subject, stage: &Stage, samples: u32, interrupt: &Arc<Ato
     let joins = connected.rays.any.saturating_sub(shown.rays.any);
     let film = film(subject, samples)?;
     let (pilot, plugins) = pilot(subject, stage, samples);
+    let per_ray = |techniques: Techniques, number: RayCounts| {
+        if number == RayCounts::default() { PerRay::default() } else { casts::per_ray(subject, techniques) }
+    };
+    let of_path = per_ray(Techniques { light_hit, next_event, ..Techniques::NONE }, path.rays);
+    let of_shown = per_ray(Techniques { lens_splat, lens_hit, ..Techniques::NONE }, shown.rays);
 
     let rays = |closest: u64, any: u64| RayCounts { closest, any };
     let mut parts = Vec::new();
-    let mut part =
-        |name: &str, seconds: f64, rays: RayCounts| parts.push(Part { name: name.to_owned(), seconds: seconds.max(0.0), rays: Some(rays) });
+    let mut part = |name: &str, seconds: f64, rays: RayCounts, each: PerRay| {
+        let (seconds, tracing) = (seconds.max(0.0), rays.closest as f64 * each.closest + rays.any as f64 * each.any);
+        parts.push(Part { name: name.to_owned(), seconds, tracing: tracing.min(seconds), rays: Some(rays) });
+    };
     if techniques.camera_walk() {
         let calls = plugins.camera_path.min(path.seconds);
         let left = 1.0 - calls / path.seconds.max(f64::MIN_POSITIVE);
         // Where no light can be landed on, nobody walks for that alone.
         let alone = if next_event > 0.0 && bare.rays.closest > 0 { bare.seconds.min(path.seconds) } else { path.seconds };
-        part("camera walk", left * alone - film, rays(path.rays.closest, 0));
-        part("next event", left * (path.seconds - alone), rays(0, path.rays.any));
+        part("camera walk", left * alone - film, rays(path.rays.closest, 0), of_path);
+        part("next event", left * (path.seconds - alone), rays(0, path.rays.any), of_path);
     }
     if techniques.light_walk() {
         let left = 1.0 - plugins.light_path.min(shown.seconds) / shown.seconds.max(f64::MIN_POSITIVE);
         // Where no lens can be landed on, nobody walks for that alone.
         let alone = if walk.rays.closest > 0 { walk.seconds.min(shown.seconds) } else { shown.seconds };
-        part("light walk", left * alone, rays(shown.rays.closest, 0));
-        part("lens splat", left * (shown.seconds - alone), rays(0, shown.rays.any));
+        part("light walk", left * alone, rays(shown.rays.closest, 0), of_shown);
+        part("lens splat", left * (shown.seconds - alone), rays(0, shown.rays.any), of_shown);
     }
     if connection > 0.0 {
-        part("connections", all.seconds - unconnected.seconds - plugins.connections, rays(0, joins));
+        let connected = Techniques { light_hit: 0.0, next_event: 0.0, ..techniques };
+        let each = per_ray(connected, rays(0, joins));
+        part("connections", all.seconds - unconnected.seconds - plugins.connections, rays(0, joins), each);
     }
     let calls = plugins.camera_path + plugins.light_path + plugins.connections;
     let rayless = [("plugins", calls), ("film", film), ("plan", pilot)];
-    parts.extend(rayless.map(|(name, seconds)| Part { name: name.to_owned(), seconds, rays: None }));
+    parts.extend(rayless.map(|(name, seconds)| Part { name: name.to_owned(), seconds, tracing: 0.0, rays: None }));
     parts.retain(|part| part.seconds > 0.0 || part.rays.is_some_and(|rays| rays != RayCounts::default()));
     let predicted = rays(path.rays.closest + shown.rays.closest, path.rays.any + shown.rays.any + if connection > 0.0 { joins } else { 0 });
     Ok(Spent { words: format!("{}, {samples} samples per pixel", words::stage(stage)), parts, rays: Rays { counted: all.rays, predicted } })

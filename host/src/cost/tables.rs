@@ -65,10 +65,10 @@ pub(super) fn knobs(report: &Report) -> String {
 
 /// Where time went.
 pub(super) fn time(report: &Report) -> String {
-    let mut text = "part,seconds,rays_closest,rays_any\n".to_owned();
+    let mut text = "part,seconds,tracing,rays_closest,rays_any\n".to_owned();
     for part in report.time.iter().flat_map(|time| &time.parts) {
         let rays = part.rays.map_or(",".to_owned(), |rays| format!("{},{}", rays.closest, rays.any));
-        let _ = writeln!(text, "{},{},{rays}", part.name, part.seconds);
+        let _ = writeln!(text, "{},{},{},{rays}", part.name, part.seconds, part.tracing);
     }
     text
 }

@@ -175,7 +175,7 @@ fn run<S: Canvas>(scene: &Scene, film: &S, job: &Job, end: u32, interrupt: Optio
 }
 
 /// Storage for one walk's vertices: enough for the longest path that is joined.
-fn storage<'s, V: bidir_kernel::Scene, R>(strategy: &Strategy) -> Vec<Option<WalkVertex<'s, V, R>>> {
+pub(crate) fn storage<'s, V: bidir_kernel::Scene, R>(strategy: &Strategy) -> Vec<Option<WalkVertex<'s, V, R>>> {
     let length = strategy.max_depth.min(LONGEST_JOINED).saturating_sub(1);
     (0..length).map(|_| None).collect()
 }

@@ -56,8 +56,8 @@ impl Parts {
     }
 
     #[inline(always)]
-    pub(super) fn surface(&self, finish: u32) -> Matt {
-        self.surfaces[finish as usize]
+    pub(super) fn surface(&self, finish: u32) -> &Matt {
+        &self.surfaces[finish as usize]
     }
 
     #[inline(always)]

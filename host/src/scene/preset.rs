@@ -80,7 +80,7 @@ impl<'a, const LIGHT_WALKS: bool> Preset for Plain<'a, LIGHT_WALKS> {
     const PLUGINS: bool = false;
     type Camera = bidir_kernel::camera::Pinhole;
     type Bsdf<'v>
-        = Matt
+        = &'v Matt
     where
         Self: 'v;
     type Light<'v>
@@ -94,7 +94,7 @@ impl<'a, const LIGHT_WALKS: bool> Preset for Plain<'a, LIGHT_WALKS> {
     }
 
     #[inline(always)]
-    fn bsdf<'v>(&'v self, _: &'v Scene, _: &'v Sandbox, finish: u32, _: Vec2) -> Matt {
+    fn bsdf<'v>(&'v self, _: &'v Scene, _: &'v Sandbox, finish: u32, _: Vec2) -> &'v Matt {
         self.0.surface(finish)
     }
 

@@ -477,10 +477,14 @@ const timeSection = report => {
     piece.style.flex = `${share(p)} 0 0`;
     piece.style.background = swatch.style.background = PARTS[i % PARTS.length];
     if (share(p) > 0) bar.append(piece);
-    return [{ content: [swatch, p.name] }, seconds(p.seconds), percent(share(p)), count(p.rays?.closest), count(p.rays?.any)];
+    const traced = p.rays && known(p.tracing);
+    return [{ content: [swatch, p.name] }, seconds(p.seconds), percent(share(p)), traced ? seconds(p.tracing) : '', traced ? seconds(p.seconds - p.tracing) : '',
+      count(p.rays?.closest), count(p.rays?.any)];
   });
-  host.append(el('div', { class: 'set' }, aside(`${time.words ? `${time.words}. ` : ''}In sum ${seconds(total)}.`), bar,
-    table([['Part'], ['Time', 'number'], ['Share', 'number'], ['Closest-hit rays', 'number'], ['Any-hit rays', 'number']], rows, { style: 'stack' })),
+  const traced = parts.reduce((sum, p) => sum + (p.tracing ?? 0), 0), shaded = parts.reduce((sum, p) => sum + (p.rays && known(p.tracing) ? p.seconds - p.tracing : 0), 0);
+  const split = traced > 0 ? ` Tracing rays takes ${seconds(traced)} of it, shading what they meet ${seconds(shaded)}.` : '';
+  host.append(el('div', { class: 'set' }, aside(`${time.words ? `${time.words}. ` : ''}In sum ${seconds(total)}.${split}`), bar,
+    table([['Part'], ['Time', 'number'], ['Share', 'number'], ['Rays', 'number'], ['Shading', 'number'], ['Closest-hit rays', 'number'], ['Any-hit rays', 'number']], rows, { style: 'stack' })),
   el('div', { class: 'set' }, el('h3', {}, 'Rays counted and predicted'), raysTable(time.rays)));
 };
 
