@@ -185,15 +185,21 @@ macro_rules! scenes {
 }
 
 scenes! {
+    ajar: "examples/scenes/ajar.xml",
+    bulb: "examples/scenes/bulb.xml",
     caustic_sphere: "examples/scenes/caustic_sphere/scene.xml",
     coated_mirror: "plugins/coated_mirror/scene.xml",
     cornell: "examples/scenes/cornell/scene.xml",
+    cove: "examples/scenes/cove.xml",
     dof_glossy: "examples/scenes/dof_glossy/scene.xml",
     env_glossy: "examples/scenes/env_glossy/scene.xml",
     gobo: "plugins/gobo/scene.xml",
     ies_spot: "plugins/ies_spot/scene.xml",
+    lantern: "examples/scenes/lantern.xml",
     leaf: "plugins/leaf/scene.xml",
+    ring: "examples/scenes/ring.xml",
     sky: "plugins/sky/scene.xml",
+    tank: "examples/scenes/tank.xml",
     thin_film: "plugins/thin_film/scene.xml",
     torchiere: "examples/scenes/torchiere/scene.xml",
     veach_mis: "examples/scenes/veach_mis/scene.xml",

@@ -9,10 +9,14 @@ use std::{
 
 use bidir::{
     cost::{Report, Settings, measure, page, spent},
+    load,
     plan::Stage,
+    plugin::Library,
+    scene::Scene,
 };
 
 use super::of_example;
+use crate::scenes::{area, camera, depth, film, shape};
 
 fn settings(folder: &Path, seconds: f64) -> Settings {
     Settings { folder: folder.to_owned(), budget: Duration::from_secs_f64(seconds), references: Vec::new(), digest: "cornell".to_owned() }
@@ -78,4 +82,24 @@ fn an_interrupted_one_is_a_page_too_and_goes_on() {
     assert!(cut.interrupted && cut.methods.is_empty() && folder.path().join("index.html").is_file());
     let whole = measured(folder.path(), 4.0, &Arc::default());
     assert_eq!(whole.methods.len(), 4);
+}
+
+/// A module that gives up now and then, in the knob that asks for modules.
+#[test]
+fn what_fails_is_left_out_and_said() {
+    let wrong = r#"<bsdf type="wrong"><integer name="mistake" value="41"/></bsdf>"#;
+    let lamp = shape("rectangle", r#"<rotate x="1" angle="90"/><translate y="2"/>"#, &area(5.0));
+    let content = [depth(5), camera("perspective", &film(24)), shape("sphere", "", wrong), lamp].concat();
+    let library = Library::new(vec![Path::new(env!("CARGO_MANIFEST_DIR")).join("wrong")]);
+    let text = format!("<scene version=\"3.0.0\">{content}</scene>");
+    let description = load::load_str(&text, Path::new("wrong.xml"), None, &[], &library).expect("a good scene").description;
+    let scene = Scene::new(&description).expect("a scene");
+
+    let folder = tempfile::tempdir().expect("a folder");
+    let settings = settings(folder.path(), 6.0);
+    let report = measure(&of_example("cornell", 24), Some((description, scene)), &settings, &Arc::default(), &mut |_, _| {});
+    let report = report.expect("a report");
+    assert!(report.methods.len() == 4 && report.knobs.iter().any(|knob| knob.knob == "sampler"));
+    assert!(matches!(&report.left_out[..], [one] if one.starts_with("plugins: ") && one.contains("wrong")), "{:?}", report.left_out);
+    page::write(folder.path(), &report).expect("a page");
 }

@@ -66,6 +66,13 @@ impl Reference {
                     if (a.width, a.height) != (b.width, b.height) {
                         return Err(Error::in_file(&files[1], "its size is not that of the other half", "give two halves of one picture"));
                     }
+                    if a.pixels == b.pixels {
+                        return Err(Error::in_file(
+                            &files[1],
+                            "it is the other half again",
+                            "give two renders of two seeds, or one picture",
+                        ));
+                    }
                     Ok(Self {
                         halves: [a, b],
                         independent: true,

@@ -34,6 +34,8 @@ pub struct Report {
     pub interrupted: bool,
     /// Whether something is missing for want of time.
     pub out_of_time: bool,
+    /// What is missing because it failed, and how.
+    pub left_out: Vec<String>,
     /// Renders of each method.
     pub seeds: u64,
     /// How sure intervals are.
@@ -119,6 +121,7 @@ impl Report {
             spent: 0.0,
             interrupted: false,
             out_of_time: false,
+            left_out: Vec::new(),
             seeds: 0,
             confidence: CONFIDENCE,
             reference: None,

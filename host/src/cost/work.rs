@@ -76,8 +76,18 @@ pub fn measure(
     };
     let journal = Journal::open(&settings.folder, &header)?;
     let before = journal.spent();
-    let mut work =
-        Work { subject, settings, interrupt, progress, journal, start: Instant::now(), before, cut_off: false, out_of_time: false };
+    let mut work = Work {
+        subject,
+        settings,
+        interrupt,
+        progress,
+        journal,
+        start: Instant::now(),
+        before,
+        cut_off: false,
+        out_of_time: false,
+        left_out: Vec::new(),
+    };
     let result = work.everything(sandboxed);
     let spent = work.start.elapsed().as_secs_f64();
     work.journal.add(Entry::Spent(spent))?;
@@ -98,6 +108,8 @@ struct Work<'a> {
     cut_off: bool,
     /// Whether there was no time for something.
     out_of_time: bool,
+    /// What could not be measured, and why.
+    left_out: Vec<String>,
 }
 
 impl Work<'_> {
@@ -123,11 +135,16 @@ impl Work<'_> {
         may
     }
 
+    /// What came of something that is left out of the report where it fails: a plugin may break off in one render and not in another.
+    fn unless_failed<T>(&mut self, what: &str, result: Result<T>) -> Option<T> {
+        result.map_err(|error| self.left_out.push(format!("{what}: {error}"))).ok()
+    }
+
     /// What there is time for, and whether that was all.
     fn everything(&mut self, sandboxed: Option<(Description, Scene)>) -> Result<Report> {
         let mut report = Report::blank(self.subject, self.budget());
         self.fill(&mut report, sandboxed)?;
-        (report.interrupted, report.out_of_time) = (self.cut_off, self.out_of_time);
+        (report.interrupted, report.out_of_time, report.left_out) = (self.cut_off, self.out_of_time, std::mem::take(&mut self.left_out));
         report.spent = self.spent();
         Ok(report)
     }
@@ -258,8 +275,8 @@ impl Work<'_> {
                 self.watched(&mut given, &stage, seed, target, reference)
             }
             None => self.watched(&mut auto, &Stage::BIDIRECTIONAL, seed, target, reference),
-        }?;
-        let Some(run) = run else { return Ok(()) };
+        };
+        let Some(run) = self.unless_failed(&format!("{}, render {}", name.name(), seed + 1), run).flatten() else { return Ok(()) };
         let words = match name.stage() {
             Some(stage) => words::stage(&stage),
             None => auto.plan().stages.iter().map(words::stage).collect::<Vec<_>>().join("; then "),
@@ -375,7 +392,8 @@ impl Work<'_> {
                 runs.extend(run.snapshots.last().filter(|_| !run.status.interrupted).copied());
             }
             Ok(runs)
-        })?;
+        });
+        let Some(runs) = self.unless_failed(&format!("{}: {}", turn.knob, turn.setting), runs) else { return Ok(None) };
         let whole = runs.len() as u64 == SETTING_SEEDS;
         self.cut_off |= !whole;
         Ok(whole.then_some(runs))

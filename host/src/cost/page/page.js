@@ -270,6 +270,8 @@ const facts = report => {
   const node = document.getElementById('facts');
   node.textContent = said.length ? `${said.join(', ')}.` : 'The report is empty.';
   if (report.interrupted || report.out_of_time) node.after(el('p', { class: 'note' }, `Not all of it was measured. What is missing is left out; ${report.interrupted ? 'the same command again goes on' : 'there was no time for it: a larger --budget has more'}.`));
+  const failed = list(report.left_out);
+  if (failed.length) node.after(el('div', { class: 'note' }, 'Left out, because it failed:', el('ul', {}, failed.map(what => el('li', {}, what)))));
   const { words, given, relmse } = report.reference ?? {};
   document.getElementById('reference').textContent = (words ? `The reference: ${words}${given ? ', given, not rendered for this report' : ''}. ` : 'There is no word on the reference. ')
     + (known(relmse) ? `By half the difference of its halves, the relMSE of their mean is about ${short(relmse)}; errors near that are uncertain.` : 'How good it is, is not known.');
