@@ -66,6 +66,9 @@ pub(super) fn run(arguments: &Cost) -> Result<Outcome> {
     };
     let report = cost::measure(&subject, sandboxed, &settings, &interrupt, &mut progress)?;
     page::write(folder, &report)?;
+    for what in &report.left_out {
+        eprintln!("warning: left out: {what}");
+    }
     if !arguments.quiet {
         if io::stderr().is_terminal() {
             eprintln!();
@@ -137,7 +140,7 @@ fn digest(arguments: &Cost, description: &Description) -> Result<String> {
     let Cost { scene, from, references, .. } = arguments;
     let mut hash = Sha256::new();
     let mut add = |file: &Path| -> Result<()> {
-        let bytes = fs::read(file).map_err(|error| Error::in_file(file, format!("it cannot be read: {error}"), "see what became of it"))?;
+        let bytes = fs::read(file).map_err(|error| Error::in_file(file, format!("it cannot be read: {error}"), "name a file that can"))?;
         hash.update(bytes.len().to_le_bytes());
         hash.update(bytes);
         Ok(())
@@ -149,8 +152,9 @@ fn digest(arguments: &Cost, description: &Description) -> Result<String> {
     files.dedup();
     files.into_iter().try_for_each(&mut add)?;
     hash.update(format!("{:?} {:?} {}", from.defines, from.max_depth, from.strict));
-    let built = std::env::current_exe().and_then(fs::metadata).and_then(|program| Ok((program.len(), program.modified()?)));
-    hash.update(format!("{:?}", built.ok()));
+    if let Ok(program) = std::env::current_exe().and_then(fs::read) {
+        hash.update(program);
+    }
     Ok(hash.finalize().iter().fold(String::new(), |mut text, byte| {
         let _ = write!(text, "{byte:02x}");
         text

@@ -1,6 +1,11 @@
 //! What the rays of a render take: some of them are kept, and cast again for nothing but the time.
 
-use std::{cell::RefCell, hint::black_box};
+use std::{
+    cell::RefCell,
+    hint::black_box,
+    sync::atomic::{AtomicBool, Ordering},
+    time::Duration,
+};
 
 use bidir_kernel::{Chance, Contribution, Film, Point, Ray, Real, Sampler as _, Segment, Techniques, Together, Vec2, Walk, sample};
 use cpu_time::ThreadTime;
@@ -14,12 +19,14 @@ use crate::{
         camera::SceneCamera,
         lights::{LightId, SceneLight},
         surface::Surface,
-        view::{Hit, View},
+        view::{Hit, RayCounts, View},
     },
 };
 
 /// Rays that are kept of each kind: enough to tell, few enough to lie in a cache's reach while the next ones come.
 const KEPT: usize = 100_000;
+/// How long it takes to find them at most.
+const LONGEST: Duration = Duration::from_millis(500);
 /// Times that they are cast again, of which the fastest counts.
 const ROUNDS: u32 = 3;
 /// Samples of a pixel before another one has its turn.
@@ -34,13 +41,18 @@ pub(super) struct PerRay {
     pub any: f64,
 }
 
-/// What a ray takes of those that a render casts which joins paths so, by the mean over its picture.
-pub(super) fn per_ray(subject: &Subject, techniques: Techniques) -> PerRay {
+/// What a ray takes of those that a render casts which joins paths so, by the mean over its picture. `cast` is how many
+/// that render has of each kind.
+pub(super) fn per_ray(subject: &Subject, techniques: Techniques, cast: RayCounts, interrupt: &AtomicBool) -> PerRay {
+    if cast == RayCounts::default() {
+        return PerRay::default();
+    }
     let view = View::new(&subject.scene, subject.strictness);
     let watched = Watched { view: &view, closest: RefCell::default(), any: RefCell::default() };
     let strategy = Stage::of(&techniques).strategy(&subject.description.integrator);
     let crop = subject.description.film.crop;
     let (mut camera_path, mut light_path) = (storage(&strategy), storage(&strategy));
+    let clock = ThreadTime::now();
     // Pixels all over the picture, and no more of them than there are.
     for turn in 0..(crop.width * crop.height).min(KEPT as u32) {
         let at = |step: f64, length: u32| ((0.5 + step * f64::from(turn)).fract() * f64::from(length)) as u32;
@@ -54,8 +66,9 @@ pub(super) fn per_ray(subject: &Subject, techniques: Techniques) -> PerRay {
             let raster = Vec2::new(x as f32 + dx, y as f32 + dy);
             sample(&watched, &strategy, &mut numbers, raster, &mut camera_path, &mut light_path, &mut Nothing);
         }
-        let full = |rays: &RefCell<Vec<Ray>>| rays.borrow().len() >= KEPT;
-        if (full(&watched.closest) && full(&watched.any)) || view.sandbox().faulted() {
+        let full = |rays: &RefCell<Vec<Ray>>, cast: u64| cast == 0 || rays.borrow().len() >= KEPT;
+        let enough = full(&watched.closest, cast.closest) && full(&watched.any, cast.any) || clock.elapsed() > LONGEST;
+        if enough || view.sandbox().faulted() || interrupt.load(Ordering::Relaxed) {
             break;
         }
     }

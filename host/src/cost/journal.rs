@@ -83,6 +83,13 @@ pub enum Entry {
     Time(Spent),
     /// The techniques apart, if there is room for them.
     Techniques(Option<Techniques>),
+    /// Something failed, and is not tried again.
+    Failed {
+        /// What was done.
+        what: String,
+        /// How it failed.
+        words: String,
+    },
     /// So many seconds were spent in all.
     Spent(f64),
 }

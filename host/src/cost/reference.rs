@@ -53,7 +53,7 @@ impl Reference {
     /// One file, whose own noise then counts as every picture's error; or two independent halves.
     ///
     /// # Errors
-    /// If a file cannot be read, or they are of two sizes.
+    /// If a file cannot be read, or they are of two sizes, or the same.
     pub fn given(files: &[PathBuf]) -> Result<Self> {
         let names = files.iter().map(|file| file.display().to_string()).collect::<Vec<_>>().join(", ");
         match <[Image; 1]>::try_from(files.iter().map(|file| picture(file)).collect::<Result<Vec<_>>>()?) {
@@ -66,12 +66,10 @@ impl Reference {
                     if (a.width, a.height) != (b.width, b.height) {
                         return Err(Error::in_file(&files[1], "its size is not that of the other half", "give two halves of one picture"));
                     }
-                    if a.pixels == b.pixels {
-                        return Err(Error::in_file(
-                            &files[1],
-                            "it is the other half again",
-                            "give two renders of two seeds, or one picture",
-                        ));
+                    let bits = |image: &Image| image.pixels.iter().flatten().map(|value| value.to_bits()).collect::<Vec<_>>();
+                    if bits(&a) == bits(&b) {
+                        let remedy = "give two renders of two seeds, or one picture alone";
+                        return Err(Error::in_file(&files[1], "it is the other half again", remedy));
                     }
                     Ok(Self {
                         halves: [a, b],

@@ -87,9 +87,7 @@ pub fn spent(subject: &Subject, stage: &Stage, samples: u32, interrupt: &Arc<Ato
     let joins = connected.rays.any.saturating_sub(shown.rays.any);
     let film = film(subject, samples)?;
     let (pilot, plugins) = pilot(subject, stage, samples);
-    let per_ray = |techniques: Techniques, number: RayCounts| {
-        if number == RayCounts::default() { PerRay::default() } else { casts::per_ray(subject, techniques) }
-    };
+    let per_ray = |techniques: Techniques, cast: RayCounts| casts::per_ray(subject, techniques, cast, interrupt);
     let of_path = per_ray(Techniques { light_hit, next_event, ..Techniques::NONE }, path.rays);
     let of_shown = per_ray(Techniques { lens_splat, lens_hit, ..Techniques::NONE }, shown.rays);
 
@@ -115,8 +113,7 @@ pub fn spent(subject: &Subject, stage: &Stage, samples: u32, interrupt: &Arc<Ato
         part("lens splat", left * (shown.seconds - alone), rays(0, shown.rays.any), of_shown);
     }
     if connection > 0.0 {
-        let connected = Techniques { light_hit: 0.0, next_event: 0.0, ..techniques };
-        let each = per_ray(connected, rays(0, joins));
+        let each = per_ray(Techniques { connection, ..Techniques::NONE }, rays(0, joins));
         part("connections", all.seconds - unconnected.seconds - plugins.connections, rays(0, joins), each);
     }
     let calls = plugins.camera_path + plugins.light_path + plugins.connections;

@@ -56,7 +56,8 @@ const MEASURED: u64 = 1 << 41;
 /// `progress` is told what comes next, and which share of the budget is spent.
 ///
 /// # Errors
-/// If files cannot be read or written, a reference is of another size, or a plugin broke off. What was measured before is kept.
+/// If files cannot be read or written, a reference is of another size, or a plugin broke off where nothing can be measured without it: in
+/// the reference, or in a first look at every technique. What was measured before is kept, and what fails later is left out and said.
 pub fn measure(
     subject: &Subject,
     sandboxed: Option<(Description, Scene)>,
@@ -76,18 +77,8 @@ pub fn measure(
     };
     let journal = Journal::open(&settings.folder, &header)?;
     let before = journal.spent();
-    let mut work = Work {
-        subject,
-        settings,
-        interrupt,
-        progress,
-        journal,
-        start: Instant::now(),
-        before,
-        cut_off: false,
-        out_of_time: false,
-        left_out: Vec::new(),
-    };
+    let mut work =
+        Work { subject, settings, interrupt, progress, journal, start: Instant::now(), before, cut_off: false, out_of_time: false };
     let result = work.everything(sandboxed);
     let spent = work.start.elapsed().as_secs_f64();
     work.journal.add(Entry::Spent(spent))?;
@@ -108,8 +99,6 @@ struct Work<'a> {
     cut_off: bool,
     /// Whether there was no time for something.
     out_of_time: bool,
-    /// What could not be measured, and why.
-    left_out: Vec<String>,
 }
 
 impl Work<'_> {
@@ -136,15 +125,26 @@ impl Work<'_> {
     }
 
     /// What came of something that is left out of the report where it fails: a plugin may break off in one render and not in another.
-    fn unless_failed<T>(&mut self, what: &str, result: Result<T>) -> Option<T> {
-        result.map_err(|error| self.left_out.push(format!("{what}: {error}"))).ok()
+    fn unless_failed<T>(&mut self, what: &str, result: Result<T>) -> Result<Option<T>> {
+        let failed = result.map_err(|error| format!("{what}: {error}"));
+        if let Err(words) = &failed {
+            self.journal.add(Entry::Failed { what: what.to_owned(), words: words.clone() })?;
+        }
+        Ok(failed.ok())
+    }
+
+    /// Whether that failed before.
+    fn failed(&self, what: &str) -> bool {
+        self.journal.entries().iter().any(|entry| matches!(entry, Entry::Failed { what: known, .. } if known == what))
     }
 
     /// What there is time for, and whether that was all.
     fn everything(&mut self, sandboxed: Option<(Description, Scene)>) -> Result<Report> {
         let mut report = Report::blank(self.subject, self.budget());
         self.fill(&mut report, sandboxed)?;
-        (report.interrupted, report.out_of_time, report.left_out) = (self.cut_off, self.out_of_time, std::mem::take(&mut self.left_out));
+        (report.interrupted, report.out_of_time) = (self.cut_off, self.out_of_time);
+        let failed = |entry: &Entry| if let Entry::Failed { words, .. } = entry { Some(words.clone()) } else { None };
+        report.left_out = self.journal.entries().iter().filter_map(failed).collect();
         report.spent = self.spent();
         Ok(report)
     }
@@ -166,8 +166,10 @@ impl Work<'_> {
         report.methods = self.methods(&reference, report.seeds, slice / report.seeds as f64)?;
         report.prices = report.methods.iter().map(Method::prices).collect();
         report.crossings = curve::crossings(&report.methods);
-        report.time = self.time(&stage, pace)?;
-        report.pyramid = self.techniques(pace)?;
+        let time = self.time(&stage, pace);
+        report.time = self.unless_failed("where the time goes", time)?.flatten();
+        let pyramid = self.techniques(pace);
+        report.pyramid = self.unless_failed("the techniques apart", pyramid)?.flatten();
         report.knobs = self.knobs(&reference, &stage, sandboxed)?;
         report.images = self.images(&report.methods, &reference);
         Ok(())
@@ -243,7 +245,8 @@ impl Work<'_> {
             for name in METHOD_NAMES {
                 let known = self.of_method(name.name());
                 if known.iter().any(|(other, ..)| *other == seed)
-                    || !self.begin(&format!("{}, render {} of {seeds}", name.name(), seed + 1), slice)
+                    || self.failed(&render_of(name, seed))
+                    || !self.begin(&format!("{} of {seeds}", render_of(name, seed)), slice)
                 {
                     continue;
                 }
@@ -276,7 +279,7 @@ impl Work<'_> {
             }
             None => self.watched(&mut auto, &Stage::BIDIRECTIONAL, seed, target, reference),
         };
-        let Some(run) = self.unless_failed(&format!("{}, render {}", name.name(), seed + 1), run).flatten() else { return Ok(()) };
+        let Some(run) = self.unless_failed(&render_of(name, seed), run)?.flatten() else { return Ok(()) };
         let words = match name.stage() {
             Some(stage) => words::stage(&stage),
             None => auto.plan().stages.iter().map(words::stage).collect::<Vec<_>>().join("; then "),
@@ -312,7 +315,7 @@ impl Work<'_> {
     /// A render of the plan, taken apart.
     fn time(&mut self, stage: &Stage, pace: f64) -> Result<Option<Spent>> {
         let known = self.journal.find(|entry| if let Entry::Time(time) = entry { Some(time.clone()) } else { None });
-        if known.is_some() || !self.begin("where the time goes", 0.0) {
+        if known.is_some() || self.failed("where the time goes") || !self.begin("where the time goes", 0.0) {
             return Ok(known);
         }
         let samples = (APART * self.budget() / (spent::RENDERS * pace)).clamp(1.0, 4096.0) as u32;
@@ -330,7 +333,7 @@ impl Work<'_> {
         if let Some(known) = known {
             return Ok(known);
         }
-        if !self.begin("the techniques apart", 0.0) {
+        if self.failed("the techniques apart") || !self.begin("the techniques apart", 0.0) {
             return Ok(None);
         }
         let samples = (APART * self.budget() / pace).clamp(1.0, 256.0) as u32;
@@ -363,13 +366,15 @@ impl Work<'_> {
             let runs = match known {
                 Some(runs) => runs,
                 None => {
-                    if !self.begin(&format!("{}: {}", turn.knob, turn.setting), 0.0) {
+                    let what = format!("{}: {}", turn.knob, turn.setting);
+                    if self.failed(&what) || !self.begin(&what, 0.0) {
                         continue;
                     }
-                    let samples = match samples {
-                        Some(samples) => samples,
-                        None => *samples.insert(self.samples_for(base, slice / DEARER)?),
-                    };
+                    if samples.is_none() {
+                        let found = self.samples_for(base, slice / DEARER);
+                        samples = self.unless_failed(&what, found)?;
+                    }
+                    let Some(samples) = samples else { continue };
                     let Some(runs) = self.setting(turn, samples, reference)? else { continue };
                     self.journal.add(Entry::Setting { knob: turn.knob.to_owned(), setting: turn.setting.clone(), runs: runs.clone() })?;
                     runs
@@ -393,7 +398,7 @@ impl Work<'_> {
             }
             Ok(runs)
         });
-        let Some(runs) = self.unless_failed(&format!("{}: {}", turn.knob, turn.setting), runs) else { return Ok(None) };
+        let Some(runs) = self.unless_failed(&format!("{}: {}", turn.knob, turn.setting), runs)? else { return Ok(None) };
         let whole = runs.len() as u64 == SETTING_SEEDS;
         self.cut_off |= !whole;
         Ok(whole.then_some(runs))
@@ -432,6 +437,10 @@ impl Work<'_> {
 
 /// The methods that are held against each other.
 const METHOD_NAMES: [Named; 4] = [Named::Path, Named::Light, Named::Bdpt, Named::Auto];
+
+fn render_of(name: Named, seed: u64) -> String {
+    format!("{}, render {}", name.name(), seed + 1)
+}
 
 fn image_file(folder: &Path, name: &str) -> PathBuf {
     folder.join(format!("{name}.exr"))

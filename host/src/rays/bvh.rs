@@ -64,6 +64,7 @@ pub enum Triangles {
 pub(super) type Trail = [u32; LEVELS];
 
 impl Geometry for Bvh {
+    // One of either for all who cast rays: copies of them would differ by chance, and a call is little beside a ray.
     fn closest(&self, ray: &Ray) -> Option<RayHit> {
         let probe = &Probe::new(ray, &self.bounds, self.some_hidden)?;
         let mut trail = [0; LEVELS];
@@ -248,7 +249,7 @@ impl Bvh {
     }
 
     /// How far it is to a triangle that was hit; `None` for other shapes, whose distances are exact.
-    #[inline]
+    #[inline(always)]
     fn exact_distance(&self, probe: &Probe, leaf: Child, trail: &[u32]) -> Option<f32> {
         match leaf.kind() {
             Leaf::Packet => Some(self.packets[leaf.packet() / PACKET].exact_distance(probe, leaf.packet() % PACKET)),

@@ -486,7 +486,7 @@ const timeSection = report => {
   const traced = parts.reduce((sum, p) => sum + (p.tracing ?? 0), 0), shaded = parts.reduce((sum, p) => sum + (p.rays && known(p.tracing) ? p.seconds - p.tracing : 0), 0);
   const split = traced > 0 ? ` Tracing rays takes ${seconds(traced)} of it, shading what they meet ${seconds(shaded)}.` : '';
   host.append(el('div', { class: 'set' }, aside(`${time.words ? `${time.words}. ` : ''}In sum ${seconds(total)}.${split}`), bar,
-    table([['Part'], ['Time', 'number'], ['Share', 'number'], ['Rays', 'number'], ['Shading', 'number'], ['Closest-hit rays', 'number'], ['Any-hit rays', 'number']], rows, { style: 'stack' })),
+    table([['Part'], ['Time', 'number'], ['Share', 'number'], ['Tracing', 'number'], ['Shading', 'number'], ['Closest-hit rays', 'number'], ['Any-hit rays', 'number']], rows, { style: 'stack' })),
   el('div', { class: 'set' }, el('h3', {}, 'Rays counted and predicted'), raysTable(time.rays)));
 };
 
