@@ -20,7 +20,13 @@ pub fn compile(root: &Path, folder: &Path, module: &Module) -> Result<()> {
             let file = format!("examples/{}.wasm", module.name);
             cargo(root, package, &["--example", &module.name, "--features", features], &file, &out)?;
         }
-        Recipe::Script => run(Command::new("sh").arg(root.join(&module.folder).join("build.sh")).arg(&out), &module.name)?,
+        Recipe::Script => {
+            let folder = root.join("target/modules");
+            fs::create_dir_all(&folder).map_err(failed("making", &folder))?;
+            let built = folder.join(format!("{}.wasm", module.name));
+            run(Command::new("sh").arg(root.join(&module.folder).join("build.sh")).arg(&built), &module.name)?;
+            take(&built, &out)?;
+        }
     }
     let bytes = fs::metadata(&out).map_err(failed("reading", &out))?.len();
     eprintln!("{}: {bytes} bytes", module.name);
@@ -34,9 +40,20 @@ fn cargo(root: &Path, package: &str, what: &[&str], file: &str, out: &Path) -> R
     command.args(what).arg("--target-dir").arg(&target).env("CARGO_ENCODED_RUSTFLAGS", flags(root)).env_remove("RUSTFLAGS");
     run(&mut command, package)?;
     let built = target.join(TARGET).join("plugin").join(file);
-    // Written, not copied: a module is no program, and has no permission to be one.
-    let bytes = fs::read(&built).map_err(failed("reading", &built))?;
-    fs::write(out, bytes).map_err(failed("writing", out))
+    take(&built, out)
+}
+
+/// Written, not copied: a module is no program, and has no permission to be one.
+fn take(built: &Path, out: &Path) -> Result<()> {
+    write_changed(out, &fs::read(built).map_err(failed("reading", built))?)
+}
+
+/// Writes a file, unless it is so already: whoever was built from it is then still up to date.
+pub(crate) fn write_changed(file: &Path, bytes: &[u8]) -> Result<()> {
+    if fs::read(file).is_ok_and(|known| known == bytes) {
+        return Ok(());
+    }
+    fs::write(file, bytes).map_err(failed("writing", file))
 }
 
 /// No path of the machine gets into a module: places in messages begin with a word instead.

@@ -4,7 +4,7 @@ use std::{collections::BTreeMap, fs, path::Path};
 
 use serde::{Deserialize, Serialize};
 
-use crate::{Language, Module, Result, failed, fingerprint};
+use crate::{Language, Module, Result, compile::write_changed, failed, fingerprint};
 
 /// The file's content: every committed module by name.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -43,7 +43,7 @@ impl Sources {
     pub fn write(&self, folder: &Path) -> Result<()> {
         let path = folder.join(Self::FILE);
         let text = serde_json::to_string_pretty(self).map_err(failed("writing", &path))?;
-        fs::write(&path, text + "\n").map_err(failed("writing", &path))
+        write_changed(&path, (text + "\n").as_bytes())
     }
 
     /// What is wrong with the committed modules, one line each; empty if nothing is. `modules` are all there should be.
