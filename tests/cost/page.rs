@@ -40,8 +40,7 @@ fn a_report_is_whole_and_its_rays_are_accounted_for() {
     let time = report.time.as_ref().expect("where time went");
     assert_eq!(time.rays.counted, time.rays.predicted);
     assert!(time.rays.counted.closest > 0);
-    let tracing: f64 = time.parts.iter().map(|part| part.tracing).sum();
-    assert!(tracing > 0.0 && time.parts.iter().any(|part| part.tracing > 0.0 && part.tracing < part.seconds), "{:?}", time.parts);
+    assert!(time.parts.iter().any(|part| part.tracing > 0.0 && part.tracing < part.seconds), "{:?}", time.parts);
     assert!(time.parts.iter().all(|part| part.rays.is_some() || part.tracing == 0.0), "{:?}", time.parts);
     assert!(report.pyramid.as_ref().is_some_and(|pyramid| pyramid.techniques.len() > 10));
     assert_eq!(report.images.len(), 5);

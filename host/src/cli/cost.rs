@@ -66,13 +66,13 @@ pub(super) fn run(arguments: &Cost) -> Result<Outcome> {
     };
     let report = cost::measure(&subject, sandboxed, &settings, &interrupt, &mut progress)?;
     page::write(folder, &report)?;
+    if !arguments.quiet && io::stderr().is_terminal() {
+        eprintln!();
+    }
     for what in &report.left_out {
         eprintln!("warning: left out: {what}");
     }
     if !arguments.quiet {
-        if io::stderr().is_terminal() {
-            eprintln!();
-        }
         for prices in &report.prices {
             let words = prices.targets.iter().filter_map(|price| {
                 let about = if price.how == curve::How::Measured { "" } else { "about " };

@@ -7,14 +7,14 @@ use std::{
     time::Duration,
 };
 
-use bidir_kernel::{Chance, Contribution, Film, Point, Ray, Real, Sampler as _, Segment, Techniques, Together, Vec2, Walk, sample};
+use bidir_kernel::{Chance, Point, Ray, Real, Sampler as _, Segment, Techniques, Vec2, Walk, sample};
 use cpu_time::ThreadTime;
 
 use super::subject::Subject;
 use crate::{
     plan::Stage,
     rays::Geometry as _,
-    render::{Sobol, Source as _, storage},
+    render::{Nobody, Sobol, Source as _, scattered, storage},
     scene::{
         camera::SceneCamera,
         lights::{LightId, SceneLight},
@@ -54,17 +54,16 @@ pub(super) fn per_ray(subject: &Subject, techniques: Techniques, cast: RayCounts
     let (mut camera_path, mut light_path) = (storage(&strategy), storage(&strategy));
     let clock = ThreadTime::now();
     // Pixels all over the picture, and no more of them than there are.
-    for turn in 0..(crop.width * crop.height).min(KEPT as u32) {
-        let at = |step: f64, length: u32| ((0.5 + step * f64::from(turn)).fract() * f64::from(length)) as u32;
-        let (x, y) = (crop.x + at(0.754_877_666_246_692_7, crop.width), crop.y + at(0.569_840_290_998_053_3, crop.height));
-        view.sandbox().begin_tile(u64::from(turn));
+    for turn in 0..(u64::from(crop.width) * u64::from(crop.height)).min(KEPT as u64) {
+        let [x, y] = scattered(turn, crop);
+        view.sandbox().begin_tile(turn);
         for index in 0..SAMPLES {
             let source = Sobol::new(subject.seed, index);
             let mut numbers = source.pixel(u64::from(y) * u64::from(subject.description.film.width) + u64::from(x));
             numbers.seek(Walk::Camera, 0);
             let [dx, dy] = numbers.next_pair();
             let raster = Vec2::new(x as f32 + dx, y as f32 + dy);
-            sample(&watched, &strategy, &mut numbers, raster, &mut camera_path, &mut light_path, &mut Nothing);
+            sample(&watched, &strategy, &mut numbers, raster, &mut camera_path, &mut light_path, &mut Nobody);
         }
         let full = |rays: &RefCell<Vec<Ray>>, cast: u64| cast == 0 || rays.borrow().len() >= KEPT;
         let enough = full(&watched.closest, cast.closest) && full(&watched.any, cast.any) || clock.elapsed() > LONGEST;
@@ -89,17 +88,6 @@ fn each<T>(rays: &[Ray], cast: impl Fn(&Ray) -> T) -> f64 {
         clock.elapsed().as_secs_f64()
     };
     (0..ROUNDS).map(once).fold(f64::INFINITY, f64::min) / rays.len().max(1) as f64
-}
-
-/// A film for what does not matter.
-struct Nothing;
-
-impl Film for Nothing {
-    type Rivals = Together;
-
-    fn add(&mut self, _: Contribution) {}
-
-    fn splat(&mut self, _: Vec2, _: Contribution) {}
 }
 
 /// A scene that keeps the rays which are cast in it.

@@ -24,6 +24,7 @@ use crate::{
 pub use director::{Always, Auto, Director, Given, Leg};
 pub use numbers::{Numbers, Scrambled, Sobol, Source};
 pub use passes::pass_end;
+pub(crate) use pilot::{Nobody, scattered};
 pub use share::Canvas;
 
 use share::{Share, Stop, Worked};

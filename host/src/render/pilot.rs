@@ -8,6 +8,7 @@ use bidir_kernel::{ByJoin, Contribution, Heuristic, Rivals, Sampler, Strategy, T
 use cpu_time::ThreadTime;
 
 use self::calls::Metering;
+pub(crate) use self::calls::Nobody;
 use super::{
     Job,
     numbers::{Apart, Numbers, Sobol, Source},
@@ -200,7 +201,7 @@ impl Pilot {
         let sources: Vec<N> = (0..SAMPLES).map(|index| N::new(!job.seed, index)).collect();
         for round in rounds {
             view.sandbox().begin_tile(round);
-            let places: Vec<_> = (0..ROUND).map(|i| self.place(round * u64::from(ROUND) + u64::from(i))).collect();
+            let places: Vec<_> = (0..ROUND).map(|i| scattered(round * u64::from(ROUND) + u64::from(i), self.blocks.crop)).collect();
             for &place in &places {
                 for source in &sources {
                     let (mut numbers, raster) = begun(source, place);
@@ -222,13 +223,6 @@ impl Pilot {
         Some(Part { evidence: kept.evidence, spent: timing.spent, calls })
     }
 
-    /// The pixel that is looked at in turn: everywhere alike, by the additive recurrence of the plastic number (Roberts 2018).
-    fn place(&self, turn: u64) -> [u32; 2] {
-        let Crop { x, y, width, height } = self.blocks.crop;
-        let at = |step: f64, length: u32| ((0.5 + step * turn as f64).fract() * f64::from(length)) as u32;
-        [x + at(0.754_877_666_246_692_7, width), y + at(0.569_840_290_998_053_3, height)]
-    }
-
     /// What samples cost.
     pub fn costs(&self) -> Costs {
         parts(self.spent.each())
@@ -238,6 +232,12 @@ impl Pilot {
     pub fn plugins(&self) -> Measured {
         self.calls.measured(self.spent.each())
     }
+}
+
+/// The pixel that is looked at in turn: everywhere alike, by the additive recurrence of the plastic number (Roberts 2018).
+pub(crate) fn scattered(turn: u64, Crop { x, y, width, height }: Crop) -> [u32; 2] {
+    let at = |step: f64, length: u32| ((0.5 + step * turn as f64).fract() * f64::from(length)) as u32;
+    [x + at(0.754_877_666_246_692_7, width), y + at(0.569_840_290_998_053_3, height)]
 }
 
 /// Takes what the pilot's samples bring.

@@ -23,7 +23,7 @@ use crate::{
 pub(super) const SAMPLES: usize = 2;
 
 /// Lets go what samples bring.
-struct Nobody;
+pub(crate) struct Nobody;
 
 impl Film for Nobody {
     type Rivals = Together;
