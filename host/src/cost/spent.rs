@@ -14,7 +14,7 @@ use super::{
 use crate::{
     error::Result,
     film::{Exposure, Film, Store},
-    plan::{Stage, choice::Costs, words},
+    plan::{Stage, words},
     render::{self, Always, Auto, Target},
     scene::view::RayCounts,
 };
@@ -86,7 +86,7 @@ pub fn spent(subject: &Subject, stage: &Stage, samples: u32, interrupt: &Arc<Ato
     let connected = of(Techniques { light_hit: 0.0, next_event: 0.0, ..techniques })?;
     let joins = connected.rays.any.saturating_sub(shown.rays.any);
     let film = film(subject, samples)?;
-    let (pilot, plugins) = pilot(subject, stage, samples);
+    let (pilot, [in_camera_paths, in_light_paths, in_connections]) = pilot(subject, stage, samples);
     let per_ray = |techniques: Techniques, cast: RayCounts| casts::per_ray(subject, techniques, cast, interrupt);
     let of_path = per_ray(Techniques { light_hit, next_event, ..Techniques::NONE }, path.rays);
     let of_shown = per_ray(Techniques { lens_splat, lens_hit, ..Techniques::NONE }, shown.rays);
@@ -98,7 +98,7 @@ pub fn spent(subject: &Subject, stage: &Stage, samples: u32, interrupt: &Arc<Ato
         parts.push(Part { name: name.to_owned(), seconds, tracing: tracing.min(seconds), rays: Some(rays) });
     };
     if techniques.camera_walk() {
-        let calls = plugins.camera_path.min(path.seconds);
+        let calls = in_camera_paths.min(path.seconds);
         let left = 1.0 - calls / path.seconds.max(f64::MIN_POSITIVE);
         // Where no light can be landed on, nobody walks for that alone.
         let alone = if next_event > 0.0 && bare.rays.closest > 0 { bare.seconds.min(path.seconds) } else { path.seconds };
@@ -106,7 +106,7 @@ pub fn spent(subject: &Subject, stage: &Stage, samples: u32, interrupt: &Arc<Ato
         part("next event", left * (path.seconds - alone), rays(0, path.rays.any), of_path);
     }
     if techniques.light_walk() {
-        let left = 1.0 - plugins.light_path.min(shown.seconds) / shown.seconds.max(f64::MIN_POSITIVE);
+        let left = 1.0 - in_light_paths.min(shown.seconds) / shown.seconds.max(f64::MIN_POSITIVE);
         // Where no lens can be landed on, nobody walks for that alone.
         let alone = if walk.rays.closest > 0 { walk.seconds.min(shown.seconds) } else { shown.seconds };
         part("light walk", left * alone, rays(shown.rays.closest, 0), of_shown);
@@ -114,9 +114,9 @@ pub fn spent(subject: &Subject, stage: &Stage, samples: u32, interrupt: &Arc<Ato
     }
     if connection > 0.0 {
         let each = per_ray(Techniques { connection, ..Techniques::NONE }, rays(0, joins));
-        part("connections", all.seconds - unconnected.seconds - plugins.connections, rays(0, joins), each);
+        part("connections", all.seconds - unconnected.seconds - in_connections, rays(0, joins), each);
     }
-    let calls = plugins.camera_path + plugins.light_path + plugins.connections;
+    let calls = in_camera_paths + in_light_paths + in_connections;
     let rayless = [("plugins", calls), ("film", film), ("plan", pilot)];
     parts.extend(rayless.map(|(name, seconds)| Part { name: name.to_owned(), seconds, tracing: 0.0, rays: None }));
     parts.retain(|part| part.seconds > 0.0 || part.rays.is_some_and(|rays| rays != RayCounts::default()));
@@ -157,21 +157,19 @@ fn film(subject: &Subject, samples: u32) -> Result<f64> {
     Ok(best)
 }
 
-/// CPU seconds of a pilot, and of plugins' calls in the parts of a render of that stage.
-fn pilot(subject: &Subject, stage: &Stage, samples: u32) -> (f64, Costs) {
+/// CPU seconds of a pilot, and of plugins' calls in the camera paths, light paths and connections of a render of that stage.
+fn pilot(subject: &Subject, stage: &Stage, samples: u32) -> (f64, [f64; 3]) {
     let mut auto = Auto::new(&subject.description, &subject.effects);
     let clock = ProcessTime::now();
     auto.begin(&subject.scene, &subject.job(&subject.manner(stage), 0, Target::Samples(samples)));
     let pilot = clock.elapsed().as_secs_f64();
     let crop = subject.description.film.crop;
     let all = 1e-9 * f64::from(samples) * f64::from(crop.width) * f64::from(crop.height);
-    let techniques = stage.techniques();
-    let mut plugins = Costs::default();
+    let mut plugins = [0.0; 3];
     for plugin in auto.choice().iter().flat_map(|choice| &choice.plugins) {
-        let each = all * plugin.nanoseconds;
-        plugins.camera_path += each * if techniques.camera_walk() { plugin.calls_in.camera_path } else { 0.0 };
-        plugins.light_path += each * plugin.calls_in.light_path * techniques.light_walks();
-        plugins.connections += each * plugin.calls_in.connections * techniques.connection;
+        for (time, calls) in plugins.iter_mut().zip(plugin.calls_in.split(stage)) {
+            *time += all * plugin.nanoseconds * calls;
+        }
     }
     (pilot, plugins)
 }

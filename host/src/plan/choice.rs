@@ -12,31 +12,50 @@ const WALKS: [f64; 5] = [0.0, 0.25, 0.5, 1.0, 2.0];
 const CONNECTIONS: [f64; 4] = [0.0, 0.25, 0.5, 1.0];
 
 /// The best of many predictions is the luckiest as well. So the plan under way, at first the best one without light paths, which is one of
-/// few, is left only for one that is better by more than chance explains: by so much over the root of the pilot's camera paths, within these
-/// bounds. And of all that chance might have put first, the cheapest is taken: what the pilot does not see, light so rare or so far out in
-/// a filter, is mostly noise that all plans have alike, and against that only more samples help.
-const LUCK: f64 = 18.0;
-const MARGIN: [f64; 2] = [0.03, 0.2];
+/// few, is left only for one that is better by more than chance often explains: by so much over the root of the pilot's camera paths, within
+/// these bounds.
+const LUCK: f64 = 6.0;
+const MARGIN: [f64; 2] = [0.02, 0.1];
+
+/// What costs of rationed light paths and connections are told from: a quarter of them.
+pub const RATION: f64 = 0.25;
 
 /// Measured CPU nanoseconds.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Costs {
-    /// Of a camera path with one light point per vertex.
+    /// Of a camera path with one light point per vertex, where there are no light paths.
     pub camera_path: f64,
     /// Of the light point of each of its vertices, within that.
     pub next_event: f64,
-    /// Of a light path whose vertices are shown to the lens.
+    /// What a camera path takes more where there are light paths: it has more rivals to weigh, and more to keep.
+    pub beside: f64,
+    /// Of a light path beside a camera path, its vertices shown to the lens.
     pub light_path: f64,
+    /// Of one without camera paths.
+    pub alone: f64,
     /// Of connecting all vertices of a camera path with all of a light path.
     pub connections: f64,
+    /// What connecting only a quarter takes more than a quarter of that.
+    pub rationed: f64,
 }
 
 impl Costs {
     /// Of a sample.
     pub fn of(&self, stage: &Stage) -> f64 {
+        self.split(stage).iter().sum()
+    }
+
+    /// Of its camera path, its light paths and its connections.
+    pub fn split(&self, stage: &Stage) -> [f64; 3] {
         let techniques = stage.techniques();
-        let camera = if techniques.camera_walk() { self.camera_path + (stage.next_event - 1.0) * self.next_event } else { 0.0 };
-        camera.max(0.0) + techniques.light_walks() * self.light_path + stage.connection * self.connections
+        let walks = techniques.light_walks();
+        if !techniques.camera_walk() {
+            return [0.0, walks * self.alone, 0.0];
+        }
+        let camera = self.camera_path + (stage.next_event - 1.0) * self.next_event + if walks > 0.0 { self.beside } else { 0.0 };
+        let part = if walks > 0.0 { stage.connection / walks } else { 0.0 };
+        let rationed = if part > 0.0 { self.rationed * (1.0 - part) / (1.0 - RATION) } else { 0.0 };
+        [camera.max(0.0), walks * self.light_path, walks * (part * self.connections + rationed)]
     }
 }
 
@@ -144,17 +163,15 @@ pub fn broadest(open: &[Stage]) -> Option<Stage> {
     open.iter().copied().max_by(|a, b| breadth(a).total_cmp(&breadth(b)))
 }
 
-/// Of those that chance might have put first, the one that stays, the best if there are several, or else the cheapest.
+/// The best one, or the best of those that stay, if chance might have put it behind.
 fn settled(all: &[Candidate], samples: usize, stays: impl Fn(&Candidate) -> bool) -> Option<Candidate> {
     let by_efficiency = |a: &&Candidate, b: &&Candidate| a.efficiency().total_cmp(&b.efficiency());
-    let least = all.iter().max_by(by_efficiency)?.efficiency() / margin(samples);
-    let near = || all.iter().filter(|candidate| candidate.efficiency() >= least);
-    let staying = near().filter(|candidate| stays(candidate)).max_by(by_efficiency);
-    staying.or_else(|| near().min_by(|a, b| a.cost.total_cmp(&b.cost))).copied()
+    let best = all.iter().max_by(by_efficiency)?;
+    let staying = all.iter().filter(|candidate| stays(candidate)).max_by(by_efficiency);
+    staying.filter(|staying| staying.efficiency() * margin(samples) >= best.efficiency()).or(Some(best)).copied()
 }
 
-/// A plan for what the pilot saw and what it took: of the open ones that chance might have put first, the stage under way, or else the
-/// cheapest.
+/// A plan for what the pilot saw and what it took: the stage under way, unless one of the open ones is clearly better.
 pub fn choose(open: &[Stage], evidence: &Evidence, costs: &Costs, until: Until, under_way: Option<&Stage>) -> Option<Choice> {
     let look = |stages: &[Stage]| -> Vec<Candidate> {
         let plans: Vec<_> = stages.iter().map(|stage| (*stage, until.samples(costs.of(stage)))).collect();
@@ -246,7 +263,15 @@ mod tests {
         evidence
     }
 
-    const COSTS: Costs = Costs { camera_path: 1000.0, next_event: 300.0, light_path: 1500.0, connections: 2000.0 };
+    const COSTS: Costs = Costs {
+        camera_path: 1000.0,
+        next_event: 300.0,
+        light_path: 1500.0,
+        alone: 1500.0,
+        connections: 2000.0,
+        beside: 0.0,
+        rationed: 0.0,
+    };
 
     #[test]
     fn light_paths_run_where_they_pay() {
@@ -262,19 +287,18 @@ mod tests {
     }
 
     #[test]
-    fn a_plan_under_way_stays_unless_another_is_clearly_better_and_else_the_cheapest_is_taken() {
-        let candidate = |walks: f64, error, cost| Candidate {
+    fn a_plan_under_way_stays_unless_another_is_clearly_better() {
+        let candidate = |walks: f64, error| Candidate {
             stage: Stage::of(&Techniques { lens_splat: walks, ..Techniques::PATH }),
             error: Some(error),
-            cost,
+            cost: 100.0,
         };
-        let all = [candidate(1.0, 0.9, 105.0), candidate(0.5, 1.0, 100.0), candidate(0.0, 2.0, 90.0)];
+        let all = [candidate(1.0, 1.0), candidate(0.5, 1.05), candidate(0.0, 1.5)];
         let after = |samples: usize, under_way: f64| {
             settled(&all, samples, |candidate| candidate.stage.lens_splat == under_way).unwrap().stage.lens_splat
         };
-        let (few, many) = (1_000, 1_000_000);
-        // 6 % are chance to few camera paths, and are none to many; 80 % are none to either.
-        assert_eq!([1.0, 0.5, 0.0, 2.0].map(|under_way| after(few, under_way)), [1.0, 0.5, 0.5, 0.5]);
-        assert_eq!([1.0, 0.5, 0.0, 2.0].map(|under_way| after(many, under_way)), [1.0; 4]);
+        // 5 % are chance to few camera paths, and are none to many; 50 % are none to either.
+        assert_eq!([1.0, 0.5, 0.0, 2.0].map(|under_way| after(1_000, under_way)), [1.0, 0.5, 1.0, 1.0]);
+        assert_eq!([1.0, 0.5, 0.0, 2.0].map(|under_way| after(1_000_000, under_way)), [1.0; 4]);
     }
 }

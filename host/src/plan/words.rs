@@ -75,9 +75,10 @@ pub fn card(choice: &Choice) -> Vec<String> {
             error(chosen)
         ),
         format!(
-            "a camera path takes {}, {} of it next event; a light path {}, all connections {}",
+            "a camera path takes {}, {} of it next event, and {} more beside light paths; a light path {}, all connections {}",
             time(costs.camera_path),
             time(costs.next_event),
+            time(costs.beside.max(0.0)),
             time(costs.light_path),
             time(costs.connections)
         ),

@@ -1,6 +1,7 @@
 //! The pilot: a few samples all over the image, by every technique, that tell plans apart. Nothing of them comes onto the film.
 
 mod calls;
+mod ways;
 
 use std::time::Duration;
 
@@ -9,6 +10,7 @@ use cpu_time::ThreadTime;
 
 use self::calls::Metering;
 pub(crate) use self::calls::Nobody;
+use self::ways::{WAYS, Ways};
 use super::{
     Job,
     numbers::{Apart, Numbers, Sobol, Source},
@@ -32,13 +34,16 @@ use crate::{
 };
 
 /// Pixels that one round looks at.
-const ROUND: u32 = 8;
+const ROUND: u32 = 16;
 
 /// Samples of each of them, half of them in either run.
 const SAMPLES: u32 = 32;
 
 /// Of these, how many costs are measured with.
-const TIMED: usize = 8;
+const TIMED: usize = 6;
+
+/// Pixels of a round that are sampled before the clock is looked at.
+const WARMING: usize = 2;
 
 /// About how many blocks the image has.
 const BLOCKS: f64 = 256.0;
@@ -56,7 +61,7 @@ pub struct Pilot {
     spent: Spent,
     calls: Metering,
     blocks: Blocks,
-    techniques: Techniques,
+    ways: Ways,
     small: FilmSettings,
     rounds: u64,
 }
@@ -80,31 +85,6 @@ struct Part {
     evidence: Evidence,
     spent: Spent,
     calls: Metering,
-}
-
-/// What costs are told from.
-const WAYS: usize = 4;
-const PATH: usize = 0;
-const BARE: usize = 1;
-const LIGHT: usize = 2;
-const ALL: usize = 3;
-
-/// The ways of sampling that costs are told from, if a plan has all of these techniques.
-fn ways(all: &Techniques) -> [Techniques; WAYS] {
-    let Techniques { lens_splat, lens_hit, .. } = *all;
-    let path = Techniques { connection: 0.0, lens_splat: 0.0, lens_hit: 0.0, ..*all };
-    let light = Techniques { lens_splat, lens_hit, ..Techniques::NONE };
-    [path, Techniques { next_event: 0.0, ..path }, light, *all]
-}
-
-/// What the parts of a sample cost, from what samples of each way do.
-fn parts(each: [f64; WAYS]) -> Costs {
-    Costs {
-        camera_path: each[PATH],
-        next_event: (each[PATH] - each[BARE]).max(0.0),
-        light_path: each[LIGHT],
-        connections: (each[ALL] - each[PATH] - each[LIGHT]).max(0.0),
-    }
 }
 
 /// The image in blocks.
@@ -147,7 +127,8 @@ impl Pilot {
         let Crop { x, y, width, height } = settings.crop;
         let crop = Crop { x, y, width: width.min(FILM), height: height.min(FILM) };
         let small = FilmSettings { crop, ..settings.clone() };
-        Self { evidence: blocks.evidence(), spent: Spent::default(), calls: Metering::default(), blocks, techniques, small, rounds: 0 }
+        let ways = Ways::of(&techniques);
+        Self { evidence: blocks.evidence(), spent: Spent::default(), calls: Metering::default(), blocks, ways, small, rounds: 0 }
     }
 
     /// What was seen.
@@ -192,7 +173,7 @@ impl Pilot {
         let clock = ThreadTime::now();
         let room = MOST_KEPT.saturating_sub(self.evidence.len());
         let view = View::new(scene, job.strictness);
-        let strategy = Strategy { techniques: self.techniques, heuristic: Heuristic::Balance, ..job.strategy };
+        let strategy = Strategy { techniques: self.ways.all(), heuristic: Heuristic::Balance, ..job.strategy };
         let (mut camera_path, mut light_path) = (storage(&strategy), storage(&strategy));
         let mut kept = Kept { evidence: self.blocks.evidence(), blocks: self.blocks, weighed: (1.0, ByJoin::NONE) };
         let mut timing = Timing { spent: Spent::default(), film: Film::new(&self.small).ok()?, crop: self.small.crop };
@@ -211,8 +192,8 @@ impl Pilot {
                 let block = self.blocks.at(Vec2::new(place[0] as f32 + 0.5, place[1] as f32 + 0.5)).unwrap_or(0);
                 kept.evidence.end_place(block);
             }
-            timing.round(&view, &strategy, &places, &sources[..TIMED]);
-            calls.round(&view, &strategy, &places, &sources[..calls::SAMPLES]);
+            timing.round(&view, &strategy, &self.ways, &places, &sources[..TIMED]);
+            calls.round(&view, &strategy, &self.ways, &places, &sources[..calls::SAMPLES]);
             if view.sandbox().faulted() {
                 return None;
             }
@@ -225,12 +206,12 @@ impl Pilot {
 
     /// What samples cost.
     pub fn costs(&self) -> Costs {
-        parts(self.spent.each())
+        self.ways.parts(self.spent.each())
     }
 
     /// What calls of plugins take of that.
     pub fn plugins(&self) -> Measured {
-        self.calls.measured(self.spent.each())
+        self.calls.measured(&self.ways, self.spent.each())
     }
 }
 
@@ -305,8 +286,8 @@ struct Timed<'a, N> {
 
 impl Timing {
     /// Samples these pixels in each of the ways that costs are told from.
-    fn round<N: Source>(&mut self, view: &View, all: &Strategy, places: &[[u32; 2]], sources: &[N]) {
-        for (way, techniques) in ways(&all.techniques).into_iter().enumerate() {
+    fn round<N: Source>(&mut self, view: &View, all: &Strategy, ways: &Ways, places: &[[u32; 2]], sources: &[N]) {
+        for (way, techniques) in ways.measured() {
             let strategy = Strategy { techniques, ..*all };
             let timed = Timed { view, strategy, timing: self, places, sources };
             self.spent.nanoseconds[way] += N::with_preset(view.scene(), strategy.effects(), timed);
@@ -323,15 +304,20 @@ impl<N: Source> Task for Timed<'_, N> {
         let Self { timing, strategy, places, sources, .. } = self;
         let view = self.view.with_preset(preset);
         let (mut camera_path, mut light_path) = (storage(&strategy), storage(&strategy));
-        let clock = ThreadTime::now();
         let Some(mut buffer) = timing.film.claim(u32::MAX) else { return 0.0 };
-        for (&place, source) in places.iter().flat_map(|place| sources.iter().map(move |source| (place, source))) {
-            let (mut numbers, raster) = begun(source, place);
-            buffer.begin(raster);
-            let mut film = Within { buffer: &mut buffer, crop: timing.crop };
-            sample(&view, &strategy, &mut numbers, raster, &mut camera_path, &mut light_path, &mut film);
-            buffer.end();
-        }
+        let mut take = |places: &[[u32; 2]]| {
+            for (&place, source) in places.iter().flat_map(|place| sources.iter().map(move |source| (place, source))) {
+                let (mut numbers, raster) = begun(source, place);
+                buffer.begin(raster);
+                let mut film = Within { buffer: &mut buffer, crop: timing.crop };
+                sample(&view, &strategy, &mut numbers, raster, &mut camera_path, &mut light_path, &mut film);
+                buffer.end();
+            }
+        };
+        // A render has had its code in the cache for long.
+        take(&places[..WARMING]);
+        let clock = ThreadTime::now();
+        take(places);
         timing.film.commit(buffer);
         clock.elapsed().as_nanos() as f64
     }

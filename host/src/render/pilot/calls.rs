@@ -11,7 +11,10 @@ use std::{
 use bidir_kernel::{Contribution, Film, Strategy, Together, Vec2, sample};
 use cpu_time::ThreadTime;
 
-use super::{WAYS, begun, parts, ways};
+use super::{
+    begun,
+    ways::{WAYS, Ways},
+};
 use crate::{
     plan::plugins::{Calls, Measured},
     plugin::{Metered, Sandbox},
@@ -61,11 +64,11 @@ impl Metering {
     }
 
     /// Samples these pixels in each of the ways that costs are told from, if there is any plugin.
-    pub(super) fn round<N: Source>(&mut self, view: &View, all: &Strategy, places: &[[u32; 2]], sources: &[N]) {
+    pub(super) fn round<N: Source>(&mut self, view: &View, all: &Strategy, ways: &Ways, places: &[[u32; 2]], sources: &[N]) {
         if self.modules.is_empty() {
             return;
         }
-        for (way, techniques) in ways(&all.techniques).into_iter().enumerate() {
+        for (way, techniques) in ways.measured() {
             let strategy = Strategy { techniques, ..*all };
             let (mut camera_path, mut light_path) = (storage(&strategy), storage(&strategy));
             for (&place, source) in places.iter().flat_map(|place| sources.iter().map(move |source| (place, source))) {
@@ -114,13 +117,13 @@ impl Metering {
     }
 
     /// What that comes to where a sample of each way costs so many nanoseconds.
-    pub(super) fn measured(&self, each: [f64; WAYS]) -> Measured {
+    pub(super) fn measured(&self, ways: &Ways, each: [f64; WAYS]) -> Measured {
         let samples = self.samples.max(1.0);
         let calls = |module: &Module| {
             let calls = module.calls.map(|calls| calls / samples);
             let each = |way: usize| if module.weighted[way] > 0.0 { module.nanoseconds[way] / module.weighted[way] } else { 0.0 };
             let time = std::array::from_fn(|way| calls[way] * each(way));
-            Calls { module: module.name.clone(), calls: parts(calls), time: parts(time) }
+            Calls { module: module.name.clone(), calls: ways.parts(calls), time: ways.parts(time) }
         };
         // What is left is measured itself: the difference of two large numbers would be mostly noise.
         let left = std::array::from_fn(|way| {
@@ -128,6 +131,6 @@ impl Metering {
             let all = called + self.between[way];
             each[way] * if all > 0.0 { self.between[way] / all } else { 1.0 }
         });
-        Measured { modules: self.modules.iter().map(calls).collect(), without: parts(left) }
+        Measured { modules: self.modules.iter().map(calls).collect(), without: ways.parts(left) }
     }
 }
