@@ -15,6 +15,7 @@ mod hostile;
 mod house;
 mod instances;
 mod invariance;
+mod peer;
 mod plans;
 mod presets;
 #[path = "../host/src/rays/tests/generator.rs"]

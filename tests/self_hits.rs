@@ -125,8 +125,8 @@ fn self_hits(scene: &Scene, [low, high]: [Vec3; 2], bounces: usize) -> usize {
         let next = Ray::leaving(&point, out, Segment::Inner);
         let found = tree.closest(&next);
         let may_not = match scene.shapes()[shape as usize].form {
-            Form::Sphere(_) | Form::Cylinder(_) => out.dot(normal) > 0.0,
-            Form::Parallelogram(_) | Form::Disk(..) | Form::Mesh(_) => true,
+            Form::Sphere(..) | Form::Cylinder { .. } => out.dot(normal) > 0.0,
+            Form::Parallelogram(..) | Form::Disk(..) | Form::Mesh(_) => true,
         };
         if let Some(again) = found.filter(|again| may_not && tree.path(again).eq(tree.path(&hit))) {
             bad += 1;

@@ -8,12 +8,12 @@ use super::{
     ior, plugin,
     properties::{Properties, Value, line},
     suggest::{did_you_mean, list},
-    texture::{Range, parameter},
+    texture::{Range, parameter, texture},
     xml::Element,
 };
 use crate::{
     error::{Error, Result},
-    scene::description::{Distribution, Material, MaterialId, Texture},
+    scene::description::{Bending, Distribution, Material, MaterialId, NormalMap, Texture},
 };
 
 /// How deep materials may nest, references followed.
@@ -107,8 +107,67 @@ fn read(context: &mut Context, of: &Properties) -> Result<Material> {
             nonlinear: of.boolean("nonlinear")?.unwrap_or(false),
         },
         "twosided" => twosided(context, of)?,
+        "mask" => Material::Mask { opacity: fraction("opacity", 0.5)?, bsdf: inner(context, of)? },
+        "blendbsdf" => {
+            let weight = fraction("weight", 0.5)?;
+            if !of.has("weight") {
+                return Err(of.missing("weight", "float"));
+            }
+            Material::Blend { weight, parts: two(context, of)? }
+        }
+        "normalmap" => {
+            let map = NormalMap::Normals(map(context, of, "normalmap")?);
+            Material::Bent { map, bending: bending(of)?, bsdf: inner(context, of)? }
+        }
+        "bumpmap" => {
+            let map = NormalMap::Heights(map(context, of, "")?, of.float("scale")?.unwrap_or(1.0) as f32);
+            Material::Bent { map, bending: bending(of)?, bsdf: inner(context, of)? }
+        }
         _ => Material::Null,
     })
+}
+
+fn bending(of: &Properties) -> Result<Bending> {
+    let flips = of.boolean("flip_invalid_normals")?.unwrap_or(true);
+    let shadowed = of.boolean("use_shadowing_function")?.unwrap_or(true);
+    Ok(Bending { flips, shadowed })
+}
+
+/// The one material inside another.
+fn inner(context: &mut Context, of: &Properties) -> Result<MaterialId> {
+    match of.objects("bsdf").as_slice() {
+        [one] => material(context, one),
+        other => {
+            let thing = format!("{} holds {} materials", of.kind(), other.len());
+            Err(Error::at(of.place(), thing, "put one <bsdf> into it"))
+        }
+    }
+}
+
+/// The two materials inside another.
+fn two(context: &mut Context, of: &Properties) -> Result<[MaterialId; 2]> {
+    match of.objects("bsdf").as_slice() {
+        [first, second] => Ok([material(context, first)?, material(context, second)?]),
+        other => {
+            let thing = format!("{} holds {} materials", of.kind(), other.len());
+            Err(Error::at(of.place(), thing, "put two <bsdf> into it"))
+        }
+    }
+}
+
+/// The bitmap that turns normals; of any name where none is given.
+fn map(context: &mut Context, of: &Properties, name: &str) -> Result<Texture> {
+    let textures = of.objects("texture");
+    let [one] = textures.as_slice() else {
+        let thing = format!("{} holds {} textures", of.kind(), textures.len());
+        let named = if name.is_empty() { String::new() } else { format!(" name=\"{name}\"") };
+        return Err(Error::at(of.place(), thing, format!("put one <texture type=\"bitmap\"{named}> into it")));
+    };
+    let map = texture(context, one, Range::ANY, &one.place)?;
+    if !matches!(map, Texture::Bitmap(_)) {
+        return Err(Error::at(&one.place, format!("{} takes a bitmap", of.kind()), "write <texture type=\"bitmap\">"));
+    }
+    Ok(map)
 }
 
 fn twosided(context: &mut Context, of: &Properties) -> Result<Material> {
@@ -116,26 +175,29 @@ fn twosided(context: &mut Context, of: &Properties) -> Result<Material> {
     let mut ids = Vec::with_capacity(2);
     for side in &sides {
         let id = material(context, side)?;
-        let transmits = match &context.materials[id.0 as usize] {
-            Material::Plugin(shader) => shader.module.manifest().lobes().intersects(Lobe::TRANSMISSION),
-            other => matches!(
-                other,
-                Material::Dielectric { .. } | Material::ThinDielectric { .. } | Material::RoughDielectric { .. } | Material::Null
-            ),
-        };
-        if transmits {
+        if transmits(&context.materials, id) {
             let kind = side.attribute("type").unwrap_or("");
             return Err(Error::at(&side.place, format!("twosided holds {kind}, which lets light through"), "use it without twosided"));
         }
         ids.push(id);
     }
     match ids.as_slice() {
-        [both] => Ok(Material::TwoSided { front: *both, back: *both }),
-        [front, back] => Ok(Material::TwoSided { front: *front, back: *back }),
+        [both] => Ok(Material::TwoSided { sides: [*both; 2] }),
+        [front, back] => Ok(Material::TwoSided { sides: [*front, *back] }),
         other => {
             let thing = format!("twosided holds {} materials", other.len());
             Err(Error::at(of.place(), thing, "put one into it for both sides, or two: front, back"))
         }
+    }
+}
+
+/// Whether a material lets any light through.
+fn transmits(materials: &[Material], id: MaterialId) -> bool {
+    match &materials[id.0 as usize] {
+        Material::Plugin(shader) => shader.module.manifest().lobes().intersects(Lobe::TRANSMISSION),
+        Material::Dielectric { .. } | Material::ThinDielectric { .. } | Material::RoughDielectric { .. } => true,
+        Material::Mask { .. } | Material::Null => true,
+        other => other.parts().iter().any(|part| transmits(materials, *part)),
     }
 }
 

@@ -31,6 +31,8 @@ impl Range {
     pub(super) const FRACTION: Self = Self { min: 0.0, max: 1.0 };
     /// 0 or more.
     pub(super) const NOT_NEGATIVE: Self = Self { min: 0.0, max: f32::MAX };
+    /// Whatever is a number.
+    pub(super) const ANY: Self = Self { min: f32::MIN, max: f32::MAX };
 
     fn holds(self, color: &Spectrum) -> bool {
         color.0.iter().all(|v| (self.min..=self.max).contains(v))

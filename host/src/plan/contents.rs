@@ -5,10 +5,10 @@ use std::collections::BTreeMap;
 use bidir_kernel::Lobe;
 use serde::Serialize;
 
-use super::effects::{lobes, sides};
+use super::effects::{lobes, with_parts};
 use crate::scene::{
     Scene,
-    description::{Crop, Description, Filter, Geometry, Instance, Integrator, Material, MaterialId, SensorKind, Shape, Texture},
+    description::{Crop, Description, Filter, Geometry, Instance, Integrator, Material, MaterialId, NormalMap, SensorKind, Shape, Texture},
     lights::ProfileSource,
 };
 
@@ -219,7 +219,7 @@ fn shapes(description: &Description) -> Vec<Shapes> {
     kinds.into_iter().filter(|kind| kind.count > 0).collect()
 }
 
-/// The materials that shapes wear, and how many of the description's they account for: the sides of a twosided one are in use with it.
+/// The materials that shapes wear, and how many of the description's they account for: what one is made of is in use with it.
 fn materials(description: &Description) -> (Vec<Materials>, usize) {
     let all = &description.materials;
     let mut wearers: BTreeMap<u32, usize> = BTreeMap::new();
@@ -227,15 +227,19 @@ fn materials(description: &Description) -> (Vec<Materials>, usize) {
         *wearers.entry(shape.material.0).or_default() += 1;
     }
     let mut used: Vec<u32> = wearers.keys().copied().collect();
+    let parts_of = |id: u32| all.get(id as usize).into_iter().flat_map(Material::parts).map(|part| part.0);
     let mut kinds: Vec<Materials> = Vec::new();
     for (&id, &shapes) in &wearers {
         let id = MaterialId(id);
-        if let Some(Material::TwoSided { front, back }) = all.get(id.0 as usize) {
-            used.extend([front.0, back.0]);
+        let mut next = used.len();
+        used.extend(parts_of(id.0));
+        while let Some(&part) = used.get(next).filter(|_| used.len() < 1 << 16) {
+            used.extend(parts_of(part));
+            next += 1;
         }
         let (kind, lobes) = (kind(all, id), lobe_names(lobes(all, id)));
         let varies = |material: &&Material| material.textures().iter().any(|texture| !matches!(texture, Texture::Constant(_)));
-        let textured = usize::from(sides(all, id).iter().any(varies));
+        let textured = usize::from(with_parts(all, id).iter().any(varies));
         match kinds.iter_mut().find(|known| known.kind == kind && known.lobes == lobes) {
             Some(known) => {
                 known.count += 1;
@@ -250,8 +254,13 @@ fn materials(description: &Description) -> (Vec<Materials>, usize) {
     (kinds, used.len())
 }
 
+/// What a material is, and in brackets what it is made of.
 fn kind(materials: &[Material], id: MaterialId) -> String {
-    let name = |material: &Material| match material {
+    let Some(material) = materials.get(id.0 as usize) else { return String::new() };
+    let mut parts: Vec<_> = material.parts().iter().map(|part| kind(materials, *part)).collect();
+    parts.dedup();
+    let parts = parts.join(" and ");
+    match material {
         Material::Plugin(shader) => format!("{} (plugin)", shader.name()),
         Material::Diffuse { .. } => "diffuse".to_owned(),
         Material::Conductor { .. } => "conductor".to_owned(),
@@ -261,12 +270,12 @@ fn kind(materials: &[Material], id: MaterialId) -> String {
         Material::RoughDielectric { .. } => "roughdielectric".to_owned(),
         Material::Plastic { .. } => "plastic".to_owned(),
         Material::Null => "null".to_owned(),
-        Material::TwoSided { .. } => "twosided".to_owned(),
-    };
-    let twosided = matches!(materials.get(id.0 as usize), Some(Material::TwoSided { .. }));
-    let mut names: Vec<_> = sides(materials, id).into_iter().map(name).collect();
-    names.dedup();
-    if twosided { format!("twosided {}", names.join(" and ")) } else { names.concat() }
+        Material::TwoSided { .. } => format!("twosided {parts}"),
+        Material::Mask { .. } => format!("mask of {parts}"),
+        Material::Blend { .. } => format!("blendbsdf of {parts}"),
+        Material::Bent { map: NormalMap::Normals(_), .. } => format!("normalmap on {parts}"),
+        Material::Bent { map: NormalMap::Heights(..), .. } => format!("bumpmap on {parts}"),
+    }
 }
 
 /// The lobes of a set, by the names that plugins give them.

@@ -100,10 +100,12 @@ impl Effects {
         self.glossy_transmission |= lobes.intersects(Lobe::GLOSSY_TRANSMISSION);
         self.delta_reflection |= lobes.intersects(Lobe::DELTA_REFLECTION);
         self.delta_transmission |= lobes.intersects(Lobe::DELTA_TRANSMISSION);
-        for material in sides(materials, id) {
+        for material in with_parts(materials, id) {
             match material {
                 Material::Dielectric { eta, .. } | Material::RoughDielectric { eta, .. } if *eta != 1.0 => self.refraction = true,
-                Material::Dielectric { .. } | Material::ThinDielectric { .. } | Material::Null => self.straight_transmission = true,
+                Material::Dielectric { .. } | Material::ThinDielectric { .. } | Material::Null | Material::Mask { .. } => {
+                    self.straight_transmission = true;
+                }
                 // What a module does with what it transmits is not known before it is asked.
                 Material::Plugin(_) => {
                     self.refraction |= lobes.intersects(Lobe::GLOSSY_TRANSMISSION | Lobe::DELTA_TRANSMISSION);
@@ -158,41 +160,49 @@ impl Effects {
     }
 }
 
-/// The material, or both of a twosided one.
-pub(super) fn sides(materials: &[Material], id: MaterialId) -> Vec<&Material> {
-    let material = |id: &MaterialId| materials.get(id.0 as usize);
-    match material(&id) {
-        Some(Material::TwoSided { front, back }) => [front, back].into_iter().filter_map(material).collect(),
-        one => one.into_iter().collect(),
+/// The material and all that it is made of, those before what they are made of.
+pub(super) fn with_parts(materials: &[Material], id: MaterialId) -> Vec<&Material> {
+    let mut all: Vec<&Material> = materials.get(id.0 as usize).into_iter().collect();
+    let mut next = 0;
+    while let Some(material) = all.get(next) {
+        // A description that was made by hand may have a circle, which no scene is built of.
+        let parts = if all.len() > MOST_PARTS { &[] } else { material.parts() };
+        all.extend(parts.iter().filter_map(|part| materials.get(part.0 as usize)));
+        next += 1;
     }
+    all
 }
+
+/// More parts than a material that can be built may have.
+const MOST_PARTS: usize = 1 << 16;
 
 /// Every lobe that a material has anywhere; of a black diffuse one, none.
 pub fn lobes(materials: &[Material], id: MaterialId) -> Lobe {
-    match materials.get(id.0 as usize) {
-        Some(Material::TwoSided { front, back }) => one_sided(materials, *front) | one_sided(materials, *back),
-        _ => one_sided(materials, id),
-    }
+    with_parts(materials, id).into_iter().map(lobes_of).fold(Lobe::NONE, |all, lobes| all | lobes)
 }
 
-fn one_sided(materials: &[Material], id: MaterialId) -> Lobe {
-    let looked_up = || Finish::new(materials, id, &mut Roster::default()).map_or(Lobe::NONE, |finish| finish.lobes());
+/// Those of a material itself, without its parts'.
+fn lobes_of(material: &Material) -> Lobe {
+    let alone = || std::slice::from_ref(material);
+    let looked_up = || Finish::new(alone(), MaterialId(0), &mut Roster::default()).map_or(Lobe::NONE, |finish| finish.lobes());
     let varies = |u: &Texture, v: &Texture| !matches!((u, v), (Texture::Constant(_), Texture::Constant(_)));
-    match materials.get(id.0 as usize) {
-        Some(Material::Diffuse { reflectance: Texture::Constant(Spectrum::BLACK) } | Material::TwoSided { .. }) => Lobe::NONE,
-        Some(Material::RoughConductor { alpha_u, alpha_v, .. }) if varies(alpha_u, alpha_v) => {
+    match material {
+        Material::Diffuse { reflectance: Texture::Constant(Spectrum::BLACK) } => Lobe::NONE,
+        Material::Mask { opacity, .. } if least(opacity) < 1.0 => Lobe::DELTA_TRANSMISSION,
+        Material::RoughConductor { alpha_u, alpha_v, .. } if varies(alpha_u, alpha_v) => {
             let smooth = least(alpha_u).max(least(alpha_v)) < Microfacet::LEAST;
             Lobe::GLOSSY_REFLECTION | if smooth { Lobe::DELTA_REFLECTION } else { Lobe::NONE }
         }
-        Some(Material::RoughDielectric { alpha_u, alpha_v, eta, .. }) if varies(alpha_u, alpha_v) => {
+        Material::RoughDielectric { alpha_u, alpha_v, eta, .. } if varies(alpha_u, alpha_v) => {
             let smooth = least(alpha_u).max(least(alpha_v)) * (eta - 1.0).abs().min(1.0) < Microfacet::LEAST;
             Lobe::GLOSSY_REFLECTION | Lobe::GLOSSY_TRANSMISSION | if smooth { Lobe::DELTA } else { Lobe::NONE }
         }
+        one if !one.parts().is_empty() => Lobe::NONE,
         _ => looked_up(),
     }
 }
 
-/// The least value of a roughness anywhere.
+/// The least value of a texture's first band anywhere.
 fn least(texture: &Texture) -> Real {
     match texture {
         Texture::Constant(value) => value[0],

@@ -153,7 +153,9 @@ impl Builder<'_> {
         for shape in &mut shapes {
             shape.light = shape.light.and_then(|id| ids[id.0 as usize]);
             // A profile may depend on coordinates and tangent, and every light's are alike, whether it is a plugin or not.
-            shape.mapped = shape.light.is_some() || self.finishes.get(shape.finish as usize).is_some_and(Finish::mapped);
+            let finish = self.finishes.get(shape.finish as usize);
+            shape.mapped = shape.light.is_some() || finish.is_some_and(Finish::mapped);
+            shape.bumpy = finish.is_some_and(Finish::bumpy);
         }
         let moved = |group: Group| Group { shapes: group.shapes.start + first..group.shapes.end + first, ..group };
         let degenerate = degenerate + groups.iter().map(|group| group.degenerate).sum::<usize>();

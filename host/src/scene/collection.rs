@@ -78,7 +78,7 @@ impl<'a> Collection<'a> {
                 let inserted = self.primitives.parallelogram(rays::Parallelogram { corner, x: a * 2.0, y: b * 2.0 }, visibility);
                 self.own(inserted, owner);
                 let facing = facing(*flip_normals) * mirror;
-                (Form::Parallelogram(a), facing, LightExtent::Parallelogram(Parallelogram(Flat::new(center, a, b, facing, 4.0))))
+                (Form::Parallelogram(a, b), facing, LightExtent::Parallelogram(Parallelogram(Flat::new(center, a, b, facing, 4.0))))
             }
             Geometry::Disk { to_world, flip_normals } => {
                 let Some((center, a, b, mirror)) = self.plane(to_world) else { return Ok(None) };
@@ -97,7 +97,7 @@ impl<'a> Collection<'a> {
                 let inserted = self.primitives.sphere(rays::Sphere { centre: center, radius }, visibility);
                 self.own(inserted, owner);
                 let outward = facing(*flip_normals) * to_world.matrix3.determinant().signum() as Real;
-                (Form::Sphere(axes), outward, LightExtent::Ball(Ball { center, radius, axes, outward, both_sides: false }))
+                (Form::Sphere(axes, radius as Real), outward, LightExtent::Ball(Ball { center, radius, axes, outward, both_sides: false }))
             }
             Geometry::Cylinder { p0, p1, radius, to_world, flip_normals } => {
                 let (_, scale) = similarity(to_world).ok_or_else(|| unequal(shape, "cylinder"))?;
@@ -112,7 +112,11 @@ impl<'a> Collection<'a> {
                 let inserted = self.primitives.cylinder(rays::Cylinder { p0: base, p1: end, x, radius }, visibility);
                 self.own(inserted, owner);
                 let outward = facing(*flip_normals);
-                (Form::Cylinder(axis), outward, LightExtent::Tube(Tube { base, axis: end - base, x, radius, outward }))
+                (
+                    Form::Cylinder { axis, length: (end - base).length() as Real, radius: radius as Real },
+                    outward,
+                    LightExtent::Tube(Tube { base, axis: end - base, x, radius, outward }),
+                )
             }
             Geometry::Mesh { mesh, to_world, flip_normals } => {
                 let form = MeshForm::new(mesh.clone(), Turn::of(&to_world.matrix3));
@@ -121,7 +125,7 @@ impl<'a> Collection<'a> {
                 (Form::Mesh(form), outward, LightExtent::Surface(surface))
             }
         };
-        self.shapes.push(Shape { form, finish: shape.material.0, light: None, facing, mapped: false });
+        self.shapes.push(Shape { form, finish: shape.material.0, light: None, facing, mapped: false, bumpy: false });
         Ok(Some(extent))
     }
 

@@ -1,11 +1,16 @@
 //! A scene as it was written down: plain data, in f64 and in the file's own coordinates, before anything is built from it.
 
+mod material;
+
 use std::sync::Arc;
 
 use bidir_kernel::Spectrum;
 use glam::{DAffine3, DVec2, DVec3};
 
-use crate::{error::Place, plugin::Module};
+pub use self::material::{
+    Bending, Bitmap, Distribution, Material, MaterialId, NormalMap, PluginShader, Texture, TexturedParameter, UvTransform, Wrap,
+};
+use crate::error::Place;
 
 /// Everything a scene file says.
 #[derive(Clone, Debug)]
@@ -141,213 +146,6 @@ pub enum Filter {
         /// σ, in pixels.
         stddev: f64,
     },
-}
-
-/// A material's name: its index in [`Description::materials`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct MaterialId(pub u32);
-
-/// A colour that may vary over a surface.
-#[derive(Clone, Debug)]
-pub enum Texture {
-    /// The same everywhere.
-    Constant(Spectrum),
-    /// An image.
-    Bitmap(Arc<Bitmap>),
-    /// Two colours in squares half a unit wide.
-    Checkerboard {
-        /// Where both halves agree.
-        color0: Spectrum,
-        /// Elsewhere.
-        color1: Spectrum,
-        /// Applied to uv first.
-        to_uv: UvTransform,
-    },
-}
-
-/// An image as a texture. Linear values; v = 0 is the image's upper edge and v = 1 its lower one, as Mitsuba 3 has it.
-#[derive(Clone, Debug)]
-pub struct Bitmap {
-    /// In texels.
-    pub width: u32,
-    /// In texels.
-    pub height: u32,
-    /// Rows from the image's top, linear.
-    pub texels: Vec<Spectrum>,
-    /// How it is read between texels.
-    pub nearest: bool,
-    /// How it goes on outside 0 … 1.
-    pub wrap: Wrap,
-    /// Applied to uv first.
-    pub to_uv: UvTransform,
-}
-
-/// How a bitmap goes on outside 0 … 1.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Wrap {
-    /// Again and again.
-    Repeat,
-    /// Back and forth.
-    Mirror,
-    /// Its edge for ever.
-    Clamp,
-}
-
-/// An affine map of uv: rows (a, b, c) with u' = a u + b v + c.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct UvTransform(pub [[f32; 3]; 2]);
-
-impl UvTransform {
-    /// Changes nothing.
-    pub const IDENTITY: Self = Self([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]);
-}
-
-/// Microfacet distributions.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Distribution {
-    /// Trowbridge & Reitz.
-    Ggx,
-    /// Beckmann & Spizzichino.
-    Beckmann,
-}
-
-/// What a surface does to light: Mitsuba's plugins, their parameters resolved.
-#[derive(Clone, Debug)]
-pub enum Material {
-    /// Lambertian.
-    Diffuse {
-        /// Albedo.
-        reflectance: Texture,
-    },
-    /// A smooth metal; `eta` 0 and `k` 1 is Mitsuba's `none`, a perfect mirror.
-    Conductor {
-        /// Real part of the index of refraction.
-        eta: Spectrum,
-        /// Imaginary part.
-        k: Spectrum,
-        /// Scales the reflection.
-        specular_reflectance: Texture,
-    },
-    /// A rough metal.
-    RoughConductor {
-        /// As in `Conductor`.
-        eta: Spectrum,
-        /// As in `Conductor`.
-        k: Spectrum,
-        /// Scales the reflection.
-        specular_reflectance: Texture,
-        /// Of microfacets.
-        distribution: Distribution,
-        /// Roughness along x; the first band of the texture.
-        alpha_u: Texture,
-        /// Roughness along y.
-        alpha_v: Texture,
-    },
-    /// A smooth boundary between two media.
-    Dielectric {
-        /// Index inside / index outside (the normal points outside).
-        eta: f32,
-        /// Scales the reflection.
-        specular_reflectance: Texture,
-        /// Scales the transmission.
-        specular_transmittance: Texture,
-    },
-    /// A thin slab: both its boundaries at once, without displacement.
-    ThinDielectric {
-        /// Index inside / index outside.
-        eta: f32,
-        /// Scales the reflection.
-        specular_reflectance: Texture,
-        /// Scales the transmission.
-        specular_transmittance: Texture,
-    },
-    /// A rough boundary between two media.
-    RoughDielectric {
-        /// Index inside / index outside.
-        eta: f32,
-        /// Scales the reflection.
-        specular_reflectance: Texture,
-        /// Scales the transmission.
-        specular_transmittance: Texture,
-        /// Of microfacets.
-        distribution: Distribution,
-        /// Roughness along x; the first band of the texture.
-        alpha_u: Texture,
-        /// Roughness along y.
-        alpha_v: Texture,
-    },
-    /// A smooth dielectric coat over a diffuse base.
-    Plastic {
-        /// Index inside / index outside.
-        eta: f32,
-        /// The base.
-        diffuse_reflectance: Texture,
-        /// Scales the coat's reflection.
-        specular_reflectance: Texture,
-        /// Whether inner reflections saturate the base's colour.
-        nonlinear: bool,
-    },
-    /// Lets light pass as if nothing were there.
-    Null,
-    /// A module's.
-    Plugin(PluginShader),
-    /// One material on each side.
-    TwoSided {
-        /// Where the normal points.
-        front: MaterialId,
-        /// Behind.
-        back: MaterialId,
-    },
-}
-
-impl Material {
-    /// Every colour and roughness of it that may vary; a twosided one has none of its own.
-    pub fn textures(&self) -> Vec<&Texture> {
-        match self {
-            Self::Diffuse { reflectance } => vec![reflectance],
-            Self::Conductor { specular_reflectance, .. } => vec![specular_reflectance],
-            Self::RoughConductor { specular_reflectance, alpha_u, alpha_v, .. } => vec![specular_reflectance, alpha_u, alpha_v],
-            Self::Dielectric { specular_reflectance, specular_transmittance, .. }
-            | Self::ThinDielectric { specular_reflectance, specular_transmittance, .. } => {
-                vec![specular_reflectance, specular_transmittance]
-            }
-            Self::RoughDielectric { specular_reflectance, specular_transmittance, alpha_u, alpha_v, .. } => {
-                vec![specular_reflectance, specular_transmittance, alpha_u, alpha_v]
-            }
-            Self::Plastic { diffuse_reflectance, specular_reflectance, .. } => vec![diffuse_reflectance, specular_reflectance],
-            Self::Plugin(plugin) => plugin.textures.iter().map(|parameter| &parameter.texture).collect(),
-            Self::Null | Self::TwoSided { .. } => vec![],
-        }
-    }
-}
-
-/// A plugin with its parameters.
-#[derive(Clone, Debug)]
-pub struct PluginShader {
-    /// The plugin.
-    pub module: Arc<Module>,
-    /// Its parameters, as it reads them; what a texture decides is not filled in.
-    pub block: Vec<u8>,
-    /// The parameters that vary.
-    pub textures: Vec<TexturedParameter>,
-}
-
-impl PluginShader {
-    /// What scenes call it: its file's name without the ending.
-    pub fn name(&self) -> String {
-        self.module.file().file_stem().unwrap_or_default().to_string_lossy().into_owned()
-    }
-}
-
-/// A plugin's parameter that a texture decides.
-#[derive(Clone, Debug)]
-pub struct TexturedParameter {
-    /// In the parameter block, bytes.
-    pub offset: u32,
-    /// 1, a float: the texture's first band; or 3.
-    pub channels: usize,
-    /// Its value.
-    pub texture: Texture,
 }
 
 /// A shape, its surface and its light.

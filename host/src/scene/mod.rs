@@ -31,7 +31,7 @@ use choice::Lights;
 use description::GroupId;
 use group::{Group, Owner};
 use shape::{Shape, in_parts};
-use surface::Finish;
+use surface::{Finish, Stretch};
 
 /// A scene ready to be rendered; its coordinates are the file's, moved to the scene's own centre.
 #[derive(Debug)]
@@ -128,16 +128,40 @@ impl Scene {
         (shape.point(&self.geometry.surface(ray, hit), triangle), shape)
     }
 
+    /// How coordinates lie on the surface at a hit; nothing unless its finish asks for that.
+    #[inline(always)]
+    fn stretch(&self, ray: &Ray, hit: &RayHit, point: &Point, shape: &Shape) -> Stretch {
+        if shape.bumpy { self.stretch_of_bumps(ray, hit, point, shape) } else { Stretch::default() }
+    }
+
     #[inline(never)]
-    fn met_in_instance(&self, ray: &Ray, hit: &RayHit, mut owner: Owner) -> (Point, u32) {
+    fn stretch_of_bumps(&self, ray: &Ray, hit: &RayHit, point: &Point, shape: &Shape) -> Stretch {
+        let owner = self.owners[hit.primitive.0 as usize];
+        let (at, frame) = (self.geometry.surface(ray, hit), &point.frame);
+        match owner.triangle() {
+            Some(triangle) => shape.stretch(&at, triangle, None, frame),
+            None => {
+                let (_, triangle) = self.owner_in_instance(hit, owner);
+                shape.stretch(&at, triangle, Some(&self.geometry.to_world(hit).matrix3), frame)
+            }
+        }
+    }
+
+    #[inline(never)]
+    fn met_in_instance(&self, ray: &Ray, hit: &RayHit, owner: Owner) -> (Point, u32) {
+        let ((shape, triangle), to_world) = (self.owner_in_instance(hit, owner), self.geometry.to_world(hit).matrix3);
+        (self.shapes[shape as usize].point_in_instance(&self.geometry.surface(ray, hit), triangle, &to_world), shape)
+    }
+
+    /// The shape that a ray met in an instance, and the number of the triangle within it.
+    fn owner_in_instance(&self, hit: &RayHit, mut owner: Owner) -> (u32, u32) {
         let (mut triangle, mut first) = (0, 0);
         for inner in self.geometry.path(hit).skip(1) {
             let group = &self.groups[owner.of as usize];
             owner = group.owners[inner.0 as usize];
             (triangle, first) = (owner.triangle().unwrap_or(0), group.shapes.start);
         }
-        let (shape, to_world) = (first + owner.of, self.geometry.to_world(hit).matrix3);
-        (self.shapes[shape as usize].point_in_instance(&self.geometry.surface(ray, hit), triangle, &to_world), shape)
+        (first + owner.of, triangle)
     }
 
     /// The lights.

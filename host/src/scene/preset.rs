@@ -10,7 +10,7 @@ use crate::{
         camera::SceneCamera,
         lights::{LightId, SceneLight},
         plain::{Lamp, Matt, Parts},
-        surface::Surface,
+        surface::{Stretch, Surface},
     },
 };
 
@@ -31,11 +31,17 @@ pub trait Preset: Copy {
     where
         Self: 'v;
 
+    /// How coordinates lie on a surface, if bumps may ask for it.
+    type Stretch: Copy;
+
+    /// What is kept of that.
+    fn stretch(told: impl FnOnce() -> Stretch) -> Self::Stretch;
+
     /// The camera.
     fn camera<'v>(&'v self, scene: &'v Scene) -> &'v Self::Camera;
 
     /// The surface of that finish at `uv`.
-    fn bsdf<'v>(&'v self, scene: &'v Scene, sandbox: &'v Sandbox, finish: u32, uv: Vec2) -> Self::Bsdf<'v>;
+    fn bsdf<'v>(&'v self, scene: &'v Scene, sandbox: &'v Sandbox, finish: u32, uv: Vec2, stretch: Self::Stretch) -> Self::Bsdf<'v>;
 
     /// A light, by name.
     fn light<'v>(&'v self, scene: &'v Scene, sandbox: &'v Sandbox, id: LightId) -> Self::Light<'v>;
@@ -58,6 +64,12 @@ impl<const LIGHT_WALKS: bool> Preset for Any<LIGHT_WALKS> {
     type Camera = SceneCamera;
     type Bsdf<'v> = Surface<'v>;
     type Light<'v> = SceneLight<'v>;
+    type Stretch = Stretch;
+
+    #[inline(always)]
+    fn stretch(told: impl FnOnce() -> Stretch) -> Stretch {
+        told()
+    }
 
     #[inline(always)]
     fn camera<'v>(&'v self, scene: &'v Scene) -> &'v SceneCamera {
@@ -65,8 +77,8 @@ impl<const LIGHT_WALKS: bool> Preset for Any<LIGHT_WALKS> {
     }
 
     #[inline(always)]
-    fn bsdf<'v>(&'v self, scene: &'v Scene, sandbox: &'v Sandbox, finish: u32, uv: Vec2) -> Surface<'v> {
-        scene.finishes[finish as usize].at(uv, sandbox)
+    fn bsdf<'v>(&'v self, scene: &'v Scene, sandbox: &'v Sandbox, finish: u32, uv: Vec2, stretch: Stretch) -> Surface<'v> {
+        scene.finishes[finish as usize].at(uv, stretch, sandbox)
     }
 
     #[inline(always)]
@@ -87,6 +99,10 @@ impl<'a, const LIGHT_WALKS: bool> Preset for Plain<'a, LIGHT_WALKS> {
         = &'v Lamp
     where
         Self: 'v;
+    type Stretch = ();
+
+    #[inline(always)]
+    fn stretch(_: impl FnOnce() -> Stretch) {}
 
     #[inline(always)]
     fn camera<'v>(&'v self, _: &'v Scene) -> &'v Self::Camera {
@@ -94,7 +110,7 @@ impl<'a, const LIGHT_WALKS: bool> Preset for Plain<'a, LIGHT_WALKS> {
     }
 
     #[inline(always)]
-    fn bsdf<'v>(&'v self, _: &'v Scene, _: &'v Sandbox, finish: u32, _: Vec2) -> &'v Matt {
+    fn bsdf<'v>(&'v self, _: &'v Scene, _: &'v Sandbox, finish: u32, _: Vec2, (): ()) -> &'v Matt {
         self.0.surface(finish)
     }
 

@@ -7,7 +7,7 @@ use glam::DMat3;
 
 use crate::{
     rays::SurfacePoint,
-    scene::{description::Mesh, lights::LightId},
+    scene::{description::Mesh, lights::LightId, surface::Stretch},
 };
 
 /// What a scene keeps of a shape.
@@ -23,19 +23,28 @@ pub struct Shape {
     pub facing: Real,
     /// Whether anything asks for surface coordinates and tangents.
     pub mapped: bool,
+    /// Whether anything asks how coordinates lie on the surface.
+    pub bumpy: bool,
 }
 
 /// What is needed to tell normals and coordinates at a hit.
 #[derive(Clone, Debug)]
 pub enum Form {
-    /// Flat; its tangent.
-    Parallelogram(Vec3),
+    /// Flat; its two half axes.
+    Parallelogram(Vec3, Vec3),
     /// Flat; its two half axes.
     Disk(Vec3, Vec3),
-    /// Round; its own axes in the world.
-    Sphere([Vec3; 3]),
-    /// Round; its axis, unit.
-    Cylinder(Vec3),
+    /// Round; its own axes in the world, and its radius.
+    Sphere([Vec3; 3], Real),
+    /// Round.
+    Cylinder {
+        /// Unit.
+        axis: Vec3,
+        /// From end to end.
+        length: Real,
+        /// About the axis.
+        radius: Real,
+    },
     /// Triangles.
     Mesh(MeshForm),
 }
@@ -127,7 +136,7 @@ impl Shape {
     fn told_apart(&self, at: &SurfacePoint, triangle: u32, turn: Option<&Turn>) -> Point {
         let local = at.local;
         let (tangent, uv) = match &self.form {
-            Form::Parallelogram(tangent) => (*tangent, Vec2::new(local.x, local.y)),
+            Form::Parallelogram(tangent, _) => (*tangent, Vec2::new(local.x, local.y)),
             Form::Mesh(mesh) => {
                 let whole = turn.map(|turn| mesh.turn.then(turn));
                 return mesh.point(at, triangle, self, whole.as_ref().unwrap_or(&mesh.turn));
@@ -136,11 +145,11 @@ impl Shape {
                 let radius = math::sqrt(local.x * local.x + local.y * local.y);
                 (*x * local.x + *y * local.y, Vec2::new(radius, share_of_turn(local.y, local.x)))
             }
-            Form::Sphere(axes) => {
+            Form::Sphere(axes, _) => {
                 let (uv, tangent) = round_mapping(axes, local);
                 (tangent, uv)
             }
-            Form::Cylinder(axis) => {
+            Form::Cylinder { axis, .. } => {
                 // Normals go back by the transpose.
                 let out = turn.map_or(at.normal, |turn| turn.along.transpose() * at.normal);
                 (axis.cross(out), Vec2::new(share_of_turn(local.y, local.x), local.z))
@@ -149,6 +158,38 @@ impl Shape {
         let tangent = turn.map_or(tangent, |turn| turn.along * tangent);
         let normal = at.normal * self.facing;
         Point::surface(at.position, normal, Frame::from_z_and_tangent(normal, tangent), uv, at.offset)
+    }
+}
+
+/// How coordinates lie on a surface.
+impl Shape {
+    /// ∂p/∂u and ∂p/∂v of a hit in the world, about its shading normal; `to_world` is that of an instance that it is in.
+    #[inline(never)]
+    pub fn stretch(&self, at: &SurfacePoint, triangle: u32, to_world: Option<&DMat3>, frame: &Frame) -> Stretch {
+        let local = at.local;
+        let derivatives = match &self.form {
+            Form::Parallelogram(x, y) => [*x * 2.0, *y * 2.0],
+            Form::Mesh(mesh) => mesh.derivatives(triangle),
+            Form::Disk(x, y) => {
+                let radius = math::sqrt(local.x * local.x + local.y * local.y);
+                let out = if radius > 0.0 { (*x * local.x + *y * local.y) / radius } else { *x };
+                [out, (*y * local.x - *x * local.y) * TURN]
+            }
+            Form::Sphere([x, y, z], radius) => {
+                let (a, b, c) = (math::dot(local, *x), math::dot(local, *y), math::dot(local, *z));
+                let sin = math::sqrt(a * a + b * b);
+                let down = if sin > 0.0 { (*x * a + *y * b) * (c / sin) - *z * sin } else { *x };
+                [(*y * a - *x * b) * (TURN * radius), down * (0.5 * TURN * radius)]
+            }
+            Form::Cylinder { axis, length, radius } => {
+                // In an instance the normal that was met is the world's; the axes here are the group's.
+                let out = to_world.map_or(at.normal, |m| math::normalize(m.transpose().as_mat3() * at.normal).unwrap_or(at.normal));
+                [axis.cross(out) * (TURN * radius), *axis * *length]
+            }
+        };
+        let [u, v] = derivatives.map(|d| to_world.map_or(d, |m| (*m * d.as_dvec3()).as_vec3())).map(|d| frame.to_local(d));
+        // The frame's x is along u, made perpendicular to the normal.
+        Stretch { a: u.x, b: v.x, c: v.y }
     }
 }
 
@@ -236,6 +277,24 @@ impl MeshForm {
     /// Surface coordinates, and the direction in which u grows. A mesh without coordinates has its barycentric ones.
     pub fn mapping(&self, triangle: u32, b1: Real, b2: Real) -> (Vec2, Vec3) {
         self.mapping_in(triangle, b1, b2, &self.turn)
+    }
+
+    /// ∂p/∂u and ∂p/∂v in a triangle; of one without coordinates, its edges.
+    fn derivatives(&self, triangle: u32) -> [Vec3; 2] {
+        let Some([p0, p1, p2]) = self.corners(&self.mesh.positions, triangle).map(|corners| corners.map(Vec3::from)) else {
+            return [Vec3::ZERO; 2];
+        };
+        let edges = [p1 - p0, p2 - p0];
+        let along = |[u, v]: [Vec3; 2]| [self.turn.along * u, self.turn.along * v];
+        let Some([t0, t1, t2]) = self.corners(&self.mesh.uvs, triangle).map(|corners| corners.map(Vec2::from)) else {
+            return along(edges);
+        };
+        let (d1, d2, [e1, e2]) = (t1 - t0, t2 - t0, edges);
+        let determinant = d1.x * d2.y - d1.y * d2.x;
+        if determinant == 0.0 {
+            return along(edges);
+        }
+        along([(e1 * d2.y - e2 * d1.y) / determinant, (e2 * d1.x - e1 * d2.x) / determinant])
     }
 
     fn mapping_in(&self, triangle: u32, b1: Real, b2: Real, turn: &Turn) -> (Vec2, Vec3) {

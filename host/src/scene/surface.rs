@@ -1,12 +1,12 @@
 //! A shape's surface at a hit: a shader with its parameters looked up, one on each side.
 
-use bidir_kernel::{BATCH, Bsdf, Carried, Effects, Lobe, Real, Scatter, Scattered, Vec2, Vec3};
+use bidir_kernel::{BATCH, Bsdf, Carried, Effects, Lobe, Real, Scatter, Scattered, Vec2, Vec3, math};
 use bidir_standard as standard;
 
 use crate::{
     plugin::{Roster, Sandbox, ShaderId},
     scene::{
-        description::{Distribution, Material, MaterialId, PluginShader, Texture, TexturedParameter},
+        description::{Bending, Distribution, Material, MaterialId, NormalMap, PluginShader, Texture, TexturedParameter},
         plain::Matt,
     },
 };
@@ -74,13 +74,35 @@ impl Bsdf for Shader {
     }
 }
 
-/// A surface at a point: its finish, asked where the point lies. It is three words, so that vertices stay cheap to move;
+/// A surface at a point: its finish, asked where the point lies. It is small, so that vertices stay cheap to move;
 /// a finish without textures has its shader ready, others look theirs up when they are asked.
 #[derive(Clone, Copy, Debug)]
 pub struct Surface<'a> {
     finish: &'a Finish,
     sandbox: &'a Sandbox,
     uv: Vec2,
+    stretch: Stretch,
+}
+
+/// How a surface's coordinates lie on it, in its shading frame: ∂p/∂u = (a, 0) and ∂p/∂v = (b, c). Only bumps ask for it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Stretch {
+    /// Of u along x.
+    pub a: Real,
+    /// Of v along x.
+    pub b: Real,
+    /// Of v along y.
+    pub c: Real,
+}
+
+impl Stretch {
+    /// The unit normal of a surface with hills whose slope in u and v is that (Blinn 1978, without what the normal's own change adds).
+    fn bent(&self, slope: Vec2) -> Vec3 {
+        let Self { a, b, c } = *self;
+        let normal = Vec3::new(-slope.x * c, slope.x * b - slope.y * a, a * c);
+        // Where v runs the other way, so does the cross product.
+        math::normalize(normal * Real::signum(a * c)).unwrap_or(Vec3::Z)
+    }
 }
 
 /// What is asked of a shader, whichever it is; `turn` is −1 where it sees z turned round.
@@ -111,6 +133,39 @@ impl Surface<'_> {
                 question.put(&self.sandbox.bsdf(*id), turn)
             }
             Ready::Varying => question.put(&recipe.looked_up(self.uv), turn),
+            Ready::Made(nested) => self.ask_nested(nested, question, turn),
+        }
+    }
+
+    /// The same of a material that is made of others.
+    #[inline(never)]
+    fn ask_nested<Q: Question>(&self, nested: &Nested, question: Q, turn: Real) -> Q::Answer {
+        let part = |finish| Surface { finish, ..*self };
+        match nested {
+            Nested::Mask { opacity, bsdf } => {
+                let masked = standard::Blend { weight: share(opacity, self.uv), first: standard::Null, second: part(bsdf) };
+                question.put(&masked, turn)
+            }
+            Nested::Blend { weight, parts: [first, second] } => {
+                question.put(&standard::Blend { weight: share(weight, self.uv), first: part(first), second: part(second) }, turn)
+            }
+            Nested::Bent { map, bending: Bending { flips, shadowed }, bsdf } => {
+                let normal = self.normal(map);
+                question.put(&standard::Bent::new(normal, *flips, *shadowed, part(bsdf)), turn)
+            }
+        }
+    }
+}
+
+impl Surface<'_> {
+    /// The turned normal in the shading frame, unit.
+    fn normal(&self, map: &NormalMap) -> Vec3 {
+        match map {
+            NormalMap::Normals(normals) => {
+                let [x, y, z] = normals.at(self.uv).0;
+                math::normalize(Vec3::new(2.0 * x - 1.0, 2.0 * y - 1.0, 2.0 * z - 1.0)).unwrap_or(Vec3::Z)
+            }
+            NormalMap::Heights(heights, scale) => self.stretch.bent(heights.slope(self.uv) * *scale),
         }
     }
 }
@@ -240,7 +295,7 @@ enum Behind {
 }
 
 /// A shader, as far as it is known before any hit.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 enum Ready {
     /// A built-in one whose parameters are the same everywhere.
     Fixed(Shader),
@@ -248,6 +303,47 @@ enum Ready {
     Varying,
     /// A module's, with its lobes.
     Plugin(ShaderId, Lobe),
+    /// One that is made of others.
+    Made(Box<Nested>),
+}
+
+/// A material that is made of others.
+#[derive(Clone, Debug)]
+enum Nested {
+    Mask { opacity: Texture, bsdf: Finish },
+    Blend { weight: Texture, parts: [Finish; 2] },
+    Bent { map: NormalMap, bending: Bending, bsdf: Finish },
+}
+
+impl Nested {
+    /// `None` if the material is not made of others; if that cannot be built either, `Some(None)`.
+    fn new(materials: &[Material], material: &Material, depth: usize, roster: &mut Roster) -> Option<Option<Self>> {
+        let mut part = |id: MaterialId| Finish::within(materials, id, depth, roster);
+        Some(match material {
+            Material::Mask { opacity, bsdf } => part(*bsdf).map(|bsdf| Self::Mask { opacity: opacity.clone(), bsdf }),
+            Material::Blend { weight, parts: [first, second] } => {
+                let parts = part(*first).and_then(|first| Some([first, part(*second)?]));
+                parts.map(|parts| Self::Blend { weight: weight.clone(), parts })
+            }
+            Material::Bent { map, bending, bsdf } => part(*bsdf).map(|bsdf| Self::Bent { map: map.clone(), bending: *bending, bsdf }),
+            _ => return None,
+        })
+    }
+
+    fn parts(&self) -> &[Finish] {
+        match self {
+            Self::Mask { bsdf, .. } | Self::Bent { bsdf, .. } => std::slice::from_ref(bsdf),
+            Self::Blend { parts, .. } => parts,
+        }
+    }
+
+    fn lobes(&self, uv: Vec2) -> Lobe {
+        let of_parts = self.parts().iter().map(|part| part.lobes_at(uv)).fold(Lobe::NONE, |all, lobes| all | lobes);
+        match self {
+            Self::Mask { opacity, .. } if opacity.at(uv)[0] < 1.0 => of_parts | Lobe::DELTA_TRANSMISSION,
+            _ => of_parts,
+        }
+    }
 }
 
 #[derive(Clone, Debug)]
@@ -258,31 +354,47 @@ struct Recipe {
 }
 
 impl Finish {
-    /// The finish of material `id`, its plugins added to `roster`; `None` if an id names nothing, or a `TwoSided` holds another.
+    /// The finish of material `id`, its plugins added to `roster`; `None` if an id names nothing, materials nest too deep, or a `TwoSided`
+    /// holds another.
     pub fn new(materials: &[Material], id: MaterialId, roster: &mut Roster) -> Option<Self> {
+        Self::within(materials, id, 0, roster)
+    }
+
+    fn within(materials: &[Material], id: MaterialId, depth: usize, roster: &mut Roster) -> Option<Self> {
         let material = |id: MaterialId| materials.get(id.0 as usize);
+        let mut recipe = |id| Recipe::new(materials, material(id)?, depth + 1, roster);
         Some(match material(id)? {
-            Material::TwoSided { front, back } if front == back => {
-                Self { front: Recipe::new(material(*front)?, roster)?, behind: Behind::Mirrored }
-            }
-            Material::TwoSided { front, back } => Self {
-                front: Recipe::new(material(*front)?, roster)?,
-                behind: Behind::Other(Box::new(Recipe::new(material(*back)?, roster)?)),
-            },
-            one => Self { front: Recipe::new(one, roster)?, behind: Behind::Itself },
+            Material::TwoSided { sides: [front, back] } if front == back => Self { front: recipe(*front)?, behind: Behind::Mirrored },
+            Material::TwoSided { sides: [front, back] } => Self { front: recipe(*front)?, behind: Behind::Other(Box::new(recipe(*back)?)) },
+            _ => Self { front: recipe(id)?, behind: Behind::Itself },
         })
     }
 
     /// The surface at `uv`, whose plugins, if there are any, are asked in `sandbox`.
     #[inline(always)]
-    pub fn at<'a>(&'a self, uv: Vec2, sandbox: &'a Sandbox) -> Surface<'a> {
-        Surface { finish: self, sandbox, uv }
+    pub fn at<'a>(&'a self, uv: Vec2, stretch: Stretch, sandbox: &'a Sandbox) -> Surface<'a> {
+        Surface { finish: self, sandbox, uv, stretch }
     }
 
     /// Whether anything varies over the surface, or about its normal: then hits need uv, and frames that follow u.
     pub fn mapped(&self) -> bool {
-        let mapped = |recipe: &Recipe| recipe.varies() || recipe.anisotropic();
-        mapped(&self.front) || matches!(&self.behind, Behind::Other(recipe) if mapped(recipe))
+        self.recipes().any(|recipe| recipe.varies() || recipe.anisotropic() || recipe.parts().iter().any(Self::mapped))
+    }
+
+    /// Whether it has bumps: then hits need to know how coordinates lie on the surface.
+    pub fn bumpy(&self) -> bool {
+        let bumps = |recipe: &Recipe| {
+            matches!(recipe.material, Material::Bent { map: NormalMap::Heights(..), .. }) || recipe.parts().iter().any(Self::bumpy)
+        };
+        self.recipes().any(bumps)
+    }
+
+    fn recipes(&self) -> impl Iterator<Item = &Recipe> {
+        let behind = match &self.behind {
+            Behind::Other(recipe) => Some(&**recipe),
+            _ => None,
+        };
+        std::iter::once(&self.front).chain(behind)
     }
 
     /// The finish as a diffuse surface of one colour, if it is one.
@@ -292,8 +404,8 @@ impl Finish {
             Behind::Mirrored => true,
             Behind::Other(_) => return None,
         };
-        match self.front.shader {
-            Ready::Fixed(Shader::Diffuse(shader)) => Some(Matt::new(shader, both_sides)),
+        match &self.front.shader {
+            Ready::Fixed(Shader::Diffuse(shader)) => Some(Matt::new(*shader, both_sides)),
             _ => None,
         }
     }
@@ -318,9 +430,12 @@ impl Finish {
     }
 }
 
+/// How deep materials may nest.
+const MAX_DEPTH: usize = 32;
+
 impl Recipe {
-    fn new(material: &Material, roster: &mut Roster) -> Option<Self> {
-        if matches!(material, Material::TwoSided { .. }) {
+    fn new(materials: &[Material], material: &Material, depth: usize, roster: &mut Roster) -> Option<Self> {
+        if matches!(material, Material::TwoSided { .. }) || depth > MAX_DEPTH {
             return None;
         }
         let inner_reflectance = match material {
@@ -328,12 +443,22 @@ impl Recipe {
             _ => 0.0,
         };
         let mut recipe = Self { material: material.clone(), inner_reflectance, shader: Ready::Varying };
-        if let Material::Plugin(shader) = material {
+        if let Some(nested) = Nested::new(materials, material, depth, roster) {
+            recipe.shader = Ready::Made(Box::new(nested?));
+        } else if let Material::Plugin(shader) = material {
             recipe.shader = Ready::Plugin(roster.add(&shader.module, &shader.block), shader.module.manifest().lobes());
         } else if !recipe.varies() {
             recipe.shader = Ready::Fixed(recipe.looked_up(Vec2::ZERO));
         }
         Some(recipe)
+    }
+
+    /// What it is made of, if it is made of others.
+    fn parts(&self) -> &[Finish] {
+        match &self.shader {
+            Ready::Made(nested) => nested.parts(),
+            _ => &[],
+        }
     }
 
     fn varies(&self) -> bool {
@@ -354,6 +479,7 @@ impl Recipe {
         match &self.shader {
             Ready::Fixed(shader) => shader.lobes(),
             Ready::Plugin(_, lobes) => *lobes,
+            Ready::Made(nested) => nested.lobes(uv),
             Ready::Varying => self.looked_up(uv).lobes(),
         }
     }
@@ -400,7 +526,8 @@ impl Recipe {
                 nonlinear: *nonlinear,
                 inner_reflectance: self.inner_reflectance,
             }),
-            Material::Null | Material::Plugin(_) | Material::TwoSided { .. } => Shader::Null(standard::Null),
+            // Modules and those that are made of others are not looked up.
+            _ => Shader::Null(standard::Null),
         }
     }
 }
@@ -419,4 +546,9 @@ fn microfacet(distribution: Distribution, alpha_u: &Texture, alpha_v: &Texture, 
         Distribution::Beckmann => standard::Distribution::Beckmann,
     };
     standard::Microfacet { distribution, alpha_u: alpha_u.at(uv)[0], alpha_v: alpha_v.at(uv)[0] }
+}
+
+/// A texture's first band as a part of a whole: between texels, rounding may leave 0 … 1.
+fn share(texture: &Texture, uv: Vec2) -> Real {
+    texture.at(uv)[0].clamp(0.0, 1.0)
 }

@@ -27,7 +27,35 @@ impl Texture {
     }
 }
 
+impl Texture {
+    /// How fast its luminance grows with u and v.
+    pub fn slope(&self, uv: Vec2) -> Vec2 {
+        match self {
+            Self::Bitmap(bitmap) => bitmap.slope(uv),
+            // Steps have no slope.
+            Self::Constant(_) | Self::Checkerboard { .. } => Vec2::ZERO,
+        }
+    }
+}
+
 impl Bitmap {
+    /// Of what [`Self::at`] is between texels.
+    fn slope(&self, uv: Vec2) -> Vec2 {
+        if self.nearest {
+            return Vec2::ZERO;
+        }
+        let at = self.to_uv.apply(uv);
+        let (x, y) = (at.x * self.width as Real - 0.5, at.y * self.height as Real - 0.5);
+        let (left, top) = (math::floor(x), math::floor(y));
+        let (u, v) = (x - left, y - top);
+        let height = |i: i64, j: i64| luminance(self.texel(left as i64 + i, top as i64 + j));
+        let (a, b, c, d) = (height(0, 0), height(1, 0), height(0, 1), height(1, 1));
+        let along_x = ((b - a) * (1.0 - v) + (d - c) * v) * self.width as Real;
+        let along_y = ((c - a) * (1.0 - u) + (d - b) * u) * self.height as Real;
+        let UvTransform([[xu, xv, _], [yu, yv, _]]) = self.to_uv;
+        Vec2::new(along_x * xu + along_y * yu, along_x * xv + along_y * yv)
+    }
+
     fn at(&self, uv: Vec2) -> Spectrum {
         let uv = self.to_uv.apply(uv);
         let (x, y) = (uv.x * self.width as Real, uv.y * self.height as Real);
@@ -48,6 +76,11 @@ impl Bitmap {
         let y = wrapped(y, i64::from(self.height), self.wrap);
         self.texels.get(y * self.width as usize + x).copied().unwrap_or(Spectrum::BLACK)
     }
+}
+
+/// Of linear sRGB (Rec. 709).
+fn luminance(color: Spectrum) -> Real {
+    0.212_671 * color[0] + 0.715_16 * color[1] + 0.072_169 * color[2]
 }
 
 fn wrapped(i: i64, size: i64, wrap: Wrap) -> usize {

@@ -83,15 +83,16 @@ impl<'a, P: Preset> View<'a, P> {
     }
 }
 
-/// A ray's end: the shape it met.
+/// A ray's end: the shape it met, and how coordinates lie on it, where a preset has bumps.
 #[derive(Clone, Copy, Debug)]
-pub struct Hit<'a> {
+pub struct Hit<'a, S> {
     shape: &'a Shape,
+    stretch: S,
 }
 
 impl<'s, P: Preset> bidir_kernel::Scene for View<'s, P> {
     const EFFECTS: Effects = P::EFFECTS;
-    type Hit = Hit<'s>;
+    type Hit = Hit<'s, P::Stretch>;
     type LightId = LightId;
     type Camera = P::Camera;
     type Bsdf<'a>
@@ -109,12 +110,13 @@ impl<'s, P: Preset> bidir_kernel::Scene for View<'s, P> {
     }
 
     #[inline(always)]
-    fn intersect(&self, ray: &Ray) -> Option<(Point, Hit<'s>)> {
+    fn intersect(&self, ray: &Ray) -> Option<(Point, Hit<'s, P::Stretch>)> {
         self.closest.set(self.closest.get() + 1);
         // The hit is read where it lies: `?` would copy it.
         let Some(hit) = &self.scene.geometry.closest(ray) else { return None };
         let (point, shape) = self.scene.met_shape(ray, hit);
-        Some((point, Hit { shape }))
+        let stretch = P::stretch(|| self.scene.stretch(ray, hit, &point, shape));
+        Some((point, Hit { shape, stretch }))
     }
 
     #[inline(always)]
@@ -124,8 +126,8 @@ impl<'s, P: Preset> bidir_kernel::Scene for View<'s, P> {
     }
 
     #[inline(always)]
-    fn bsdf(&self, point: &Point, hit: Hit<'s>) -> P::Bsdf<'_> {
-        self.preset.bsdf(self.scene, &self.sandbox, hit.shape.finish, point.uv)
+    fn bsdf(&self, point: &Point, hit: Hit<'s, P::Stretch>) -> P::Bsdf<'_> {
+        self.preset.bsdf(self.scene, &self.sandbox, hit.shape.finish, point.uv, hit.stretch)
     }
 
     #[inline(always)]
@@ -134,7 +136,7 @@ impl<'s, P: Preset> bidir_kernel::Scene for View<'s, P> {
     }
 
     #[inline(always)]
-    fn light_id_at(&self, hit: Hit<'s>) -> Option<LightId> {
+    fn light_id_at(&self, hit: Hit<'s, P::Stretch>) -> Option<LightId> {
         hit.shape.light
     }
 

@@ -11,6 +11,8 @@
 //! | [`RoughDielectric`] | a boundary of microfacets between two media |
 //! | [`Plastic`] | a smooth dielectric coat over a diffuse base |
 //! | [`Null`] | lets light pass as if nothing were there |
+//! | [`Blend`] | two surfaces in one, or a mask |
+//! | [`Bent`] | a surface whose normal is turned |
 //!
 //! | light | |
 //! |---|---|
@@ -32,6 +34,8 @@
 #[cfg(test)]
 extern crate std;
 
+pub mod bent;
+pub mod blend;
 pub mod conductor;
 pub mod dielectric;
 pub mod diffuse;
@@ -47,6 +51,8 @@ pub mod thin_dielectric;
 #[cfg(test)]
 mod tests;
 
+pub use bent::Bent;
+pub use blend::Blend;
 pub use conductor::Conductor;
 pub use dielectric::Dielectric;
 pub use diffuse::Diffuse;

@@ -1,5 +1,6 @@
 //! What holds for every shader.
 
+mod bent;
 mod chi_square;
 mod limits;
 mod profiles;

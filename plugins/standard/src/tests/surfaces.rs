@@ -94,5 +94,18 @@ pub fn all() -> Vec<Surface> {
             1.5,
         ));
     }
+    blends(&mut out);
     out
+}
+
+fn blends(out: &mut Vec<Surface>) {
+    let gold = gold(microfacets(&[(0.2, 0.2)])[0]);
+    let glass = rough_glass(1.5, microfacets(&[(0.3, 0.2)])[1]);
+    for weight in [0.0, 0.3, 1.0] {
+        let matt = Diffuse { reflectance: TINT };
+        out.push(surface(format!("{weight} of gold on matt"), Blend { weight, first: matt, second: gold }, 1.0));
+        out.push(surface(format!("a mask {weight}"), Blend { weight, first: Null, second: Plastic::new(1.5, TINT, WHITE, false) }, 1.0));
+    }
+    out.push(surface("gold and glass", Blend { weight: 0.6, first: gold, second: Blend { weight: 0.5, first: gold, second: gold } }, 1.0));
+    out.push(surface("glass behind a mask", Blend { weight: 0.7, first: glass, second: glass }, 1.5));
 }

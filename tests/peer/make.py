@@ -1,0 +1,26 @@
+#!/usr/bin/env python3
+"""Renders the scenes of this folder with Mitsuba 3.9.1 (`pip install mitsuba==3.9.1`): `make.py [NAME...]`.
+
+Every NAME.xml gives NAME.exr, 32 pixels wide and 64 high: two independent halves, one below the other, in half floats. A scene whose name is
+given is rendered anew, or without names each that has no picture yet.
+"""
+import pathlib
+import sys
+
+import mitsuba
+import numpy
+
+mitsuba.set_variant("llvm_ad_rgb" if "--llvm" in sys.argv else "scalar_rgb")
+HERE = pathlib.Path(__file__).resolve().parent
+SAMPLES = 4096
+
+names = [word for word in sys.argv[1:] if not word.startswith("-")]
+for file in sorted(HERE.glob("*.xml")):
+    picture = file.with_suffix(".exr")
+    if file.stem not in names if names else picture.exists():
+        continue
+    scene = mitsuba.load_file(str(file))
+    halves = [numpy.array(mitsuba.render(scene, spp=SAMPLES, seed=seed))[:, :, :3] for seed in (1, 2)]
+    both = mitsuba.Bitmap(numpy.concatenate(halves).astype(numpy.float16))
+    both.write(str(picture))
+    print(file.stem, f"{float(numpy.mean(halves)):.5f}")
