@@ -107,8 +107,16 @@ rows! {
     bsdf_null
     bsdf_plastic
     bsdf_plastic_nonlinear
+    bsdf_principled
+    bsdf_principled_cloth
+    bsdf_principled_glass
+    bsdf_principled_metal
+    bsdf_principledthin
+    bsdf_principledthin_leaf
     bsdf_roughconductor
     bsdf_roughdielectric
+    bsdf_roughplastic
+    bsdf_roughplastic_nonlinear
     bsdf_thindielectric
     bsdf_twosided
 }

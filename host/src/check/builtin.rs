@@ -17,8 +17,15 @@ pub const MODULES: [(&str, &[u8]); 12] = [
 ];
 
 /// Built-ins that are no module, and why there is nothing to check of them alone.
-pub const OTHERS: [(&str, &str); 3] = [
+pub const OTHERS: [(&str, &str); 10] = [
     ("twosided", "it turns what is inside it; check that"),
+    ("mask", "it is what is inside it; check that"),
+    ("blendbsdf", "it is what is inside it; check that"),
+    ("normalmap", "it turns what is inside it; check that"),
+    ("bumpmap", "it turns what is inside it; check that"),
+    ("roughplastic", "it is no module; its tests come with its source"),
+    ("principled", "it is no module; its tests come with its source"),
+    ("principledthin", "it is no module; its tests come with its source"),
     ("directional", "its one direction has no density; there is nothing to check"),
     ("envmap", "it is its image; check a light of your own, or constant"),
 ];

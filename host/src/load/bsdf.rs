@@ -13,7 +13,7 @@ use super::{
 };
 use crate::{
     error::{Error, Result},
-    scene::description::{Bending, Distribution, Material, MaterialId, NormalMap, Texture},
+    scene::description::{Bending, Distribution, Material, MaterialId, NormalMap, Principled, Texture},
 };
 
 /// How deep materials may nest, references followed.
@@ -106,6 +106,20 @@ fn read(context: &mut Context, of: &Properties) -> Result<Material> {
             specular_reflectance: fraction("specular_reflectance", 1.0)?,
             nonlinear: of.boolean("nonlinear")?.unwrap_or(false),
         },
+        "roughplastic" => {
+            let eta = eta(of, "polypropylene")?;
+            let diffuse_reflectance = fraction("diffuse_reflectance", 0.5)?;
+            let specular_reflectance = fraction("specular_reflectance", 1.0)?;
+            let nonlinear = of.boolean("nonlinear")?.unwrap_or(false);
+            let distribution = distribution(of)?;
+            let alpha = of.float("alpha")?.unwrap_or(0.1) as f32;
+            if alpha < 0.0 {
+                return Err(of.error("alpha", "is negative", "write 0 or more"));
+            }
+            Material::RoughPlastic { eta, diffuse_reflectance, specular_reflectance, nonlinear, distribution, alpha }
+        }
+        "principled" => Material::Principled(Box::new(principled(context, of)?)),
+        "principledthin" => Material::PrincipledThin(Box::new(principled(context, of)?)),
         "twosided" => twosided(context, of)?,
         "mask" => Material::Mask { opacity: fraction("opacity", 0.5)?, bsdf: inner(context, of)? },
         "blendbsdf" => {
@@ -125,6 +139,66 @@ fn read(context: &mut Context, of: &Properties) -> Result<Material> {
         }
         _ => Material::Null,
     })
+}
+
+/// Of `principled` or `principledthin`; what either does not have is left at nothing.
+fn principled(context: &mut Context, of: &Properties) -> Result<Principled> {
+    let thin = of.kind() == "principledthin";
+    of.pass_over(if thin {
+        &[
+            "diffuse_reflectance_sampling_rate",
+            "specular_reflectance_sampling_rate",
+            "specular_transmittance_sampling_rate",
+            "diffuse_transmittance_sampling_rate",
+        ]
+    } else {
+        &["diffuse_reflectance_sampling_rate", "main_specular_sampling_rate", "clearcoat_sampling_rate"]
+    });
+    let nothing = Texture::Constant(Spectrum::BLACK);
+    let mut fraction = |name, default| parameter(context, of, name, default, Range::FRACTION);
+    let base_color = fraction("base_color", 0.5)?;
+    let (roughness, anisotropic) = (fraction("roughness", 0.5)?, fraction("anisotropic", 0.0)?);
+    let (spec_trans, spec_tint) = (fraction("spec_trans", 0.0)?, fraction("spec_tint", 0.0)?);
+    let (sheen, sheen_tint, flatness) = (fraction("sheen", 0.0)?, fraction("sheen_tint", 0.0)?, fraction("flatness", 0.0)?);
+    let mut thick = |name| if thin { Ok(nothing.clone()) } else { fraction(name, 0.0) };
+    let (metallic, clearcoat, clearcoat_gloss) = (thick("metallic")?, thick("clearcoat")?, thick("clearcoat_gloss")?);
+    let diff_trans = if thin { parameter(context, of, "diff_trans", 0.0, Range { min: 0.0, max: 2.0 })? } else { nothing };
+    let eta = if thin {
+        parameter(context, of, "eta", 1.5, Range { min: 1e-3, max: 1e3 })?
+    } else {
+        Texture::Constant(Spectrum::splat(principled_eta(of, !spec_trans.is(0.0))?))
+    };
+    Ok(Principled {
+        base_color,
+        roughness,
+        anisotropic,
+        metallic,
+        spec_trans,
+        eta,
+        spec_tint,
+        sheen,
+        sheen_tint,
+        flatness,
+        clearcoat,
+        clearcoat_gloss,
+        diff_trans,
+    })
+}
+
+/// Index inside / index outside, from `eta` or `specular`. What lets light through must bend it a little, as in Mitsuba.
+fn principled_eta(of: &Properties, glassy: bool) -> Result<f32> {
+    match (of.positive("eta")?, of.float("specular")?) {
+        (Some(_), Some(_)) => Err(of.error("specular", "is given together with eta", "keep either of them")),
+        (Some(eta), None) if !(1e-3..=1e3).contains(&eta) => Err(of.error("eta", format!("is {eta:e}"), "write 0.001 … 1000")),
+        (Some(eta), None) => Ok(if glassy && eta == 1.0 { 1.001 } else { eta as f32 }),
+        (None, specular) => {
+            let specular = specular.unwrap_or(0.5) as f32;
+            if !(0.0..=1.0).contains(&specular) {
+                return Err(of.error("specular", format!("is {specular}"), "it must lie within 0 … 1"));
+            }
+            Ok(bidir_standard::Principled::eta_of_specular(if glassy && specular == 0.0 { 1e-3 } else { specular }))
+        }
+    }
 }
 
 fn bending(of: &Properties) -> Result<Bending> {
@@ -196,7 +270,8 @@ fn transmits(materials: &[Material], id: MaterialId) -> bool {
     match &materials[id.0 as usize] {
         Material::Plugin(shader) => shader.module.manifest().lobes().intersects(Lobe::TRANSMISSION),
         Material::Dielectric { .. } | Material::ThinDielectric { .. } | Material::RoughDielectric { .. } => true,
-        Material::Mask { .. } | Material::Null => true,
+        Material::Mask { .. } | Material::Null | Material::PrincipledThin(_) => true,
+        Material::Principled(of) => !of.spec_trans.is(0.0),
         other => other.parts().iter().any(|part| transmits(materials, *part)),
     }
 }
@@ -251,9 +326,13 @@ struct Roughness {
     alpha_v: Texture,
 }
 
-fn roughness(context: &mut Context, of: &Properties) -> Result<Roughness> {
-    let distribution = of.choice("distribution", &[("beckmann", Distribution::Beckmann), ("ggx", Distribution::Ggx)])?;
+fn distribution(of: &Properties) -> Result<Distribution> {
     of.boolean("sample_visible")?; // changes how directions are found, not what the image is
+    of.choice("distribution", &[("beckmann", Distribution::Beckmann), ("ggx", Distribution::Ggx)])
+}
+
+fn roughness(context: &mut Context, of: &Properties) -> Result<Roughness> {
+    let distribution = distribution(of)?;
     let both = (of.has("alpha"), of.has("alpha_u"), of.has("alpha_v"));
     let mut alpha = |name| parameter(context, of, name, 0.1, Range::NOT_NEGATIVE);
     let (alpha_u, alpha_v) = match both {

@@ -106,6 +106,7 @@ impl Effects {
                 Material::Dielectric { .. } | Material::ThinDielectric { .. } | Material::Null | Material::Mask { .. } => {
                     self.straight_transmission = true;
                 }
+                Material::Principled(of) if !of.spec_trans.is(0.0) => self.refraction = true,
                 // What a module does with what it transmits is not known before it is asked.
                 Material::Plugin(_) => {
                     self.refraction |= lobes.intersects(Lobe::GLOSSY_TRANSMISSION | Lobe::DELTA_TRANSMISSION);
@@ -196,6 +197,17 @@ fn lobes_of(material: &Material) -> Lobe {
         Material::RoughDielectric { alpha_u, alpha_v, eta, .. } if varies(alpha_u, alpha_v) => {
             let smooth = least(alpha_u).max(least(alpha_v)) * (eta - 1.0).abs().min(1.0) < Microfacet::LEAST;
             Lobe::GLOSSY_REFLECTION | Lobe::GLOSSY_TRANSMISSION | if smooth { Lobe::DELTA } else { Lobe::NONE }
+        }
+        Material::Principled(of) => {
+            let (opaque, glassy) = (!of.spec_trans.is(1.0) && !of.metallic.is(1.0), !of.spec_trans.is(0.0) && !of.metallic.is(1.0));
+            let base = if opaque { Lobe::DIFFUSE_REFLECTION } else { Lobe::NONE };
+            base | Lobe::GLOSSY_REFLECTION | if glassy { Lobe::GLOSSY_TRANSMISSION } else { Lobe::NONE }
+        }
+        Material::PrincipledThin(of) => {
+            let (diffuse, glossy) = (!of.spec_trans.is(1.0), !of.spec_trans.is(0.0));
+            let reflected = if diffuse && !of.diff_trans.is(2.0) { Lobe::DIFFUSE_REFLECTION } else { Lobe::NONE };
+            let passed = if diffuse && !of.diff_trans.is(0.0) { Lobe::DIFFUSE_TRANSMISSION } else { Lobe::NONE };
+            reflected | passed | if glossy { Lobe::GLOSSY_REFLECTION | Lobe::GLOSSY_TRANSMISSION } else { Lobe::NONE }
         }
         one if !one.parts().is_empty() => Lobe::NONE,
         _ => looked_up(),

@@ -8,7 +8,7 @@ use bidir_kernel::Spectrum;
 use glam::{DAffine3, DVec2, DVec3};
 
 pub use self::material::{
-    Bending, Bitmap, Distribution, Material, MaterialId, NormalMap, PluginShader, Texture, TexturedParameter, UvTransform, Wrap,
+    Bending, Bitmap, Distribution, Material, MaterialId, NormalMap, PluginShader, Principled, Texture, TexturedParameter, UvTransform, Wrap,
 };
 use crate::error::Place;
 

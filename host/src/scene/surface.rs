@@ -1,6 +1,6 @@
 //! A shape's surface at a hit: a shader with its parameters looked up, one on each side.
 
-use bidir_kernel::{BATCH, Bsdf, Carried, Effects, Lobe, Real, Scatter, Scattered, Vec2, Vec3, math};
+use bidir_kernel::{BATCH, Bsdf, Carried, Effects, Lobe, Real, Scatter, Scattered, Spectrum, Vec2, Vec3, math};
 use bidir_standard as standard;
 
 use crate::{
@@ -28,6 +28,12 @@ pub enum Shader {
     RoughDielectric(standard::RoughDielectric),
     /// See [`standard::Plastic`].
     Plastic(standard::Plastic),
+    /// See [`standard::RoughPlastic`].
+    RoughPlastic(standard::RoughPlastic),
+    /// See [`standard::Principled`].
+    Principled(standard::Principled),
+    /// See [`standard::PrincipledThin`].
+    PrincipledThin(standard::PrincipledThin),
     /// See [`standard::Null`].
     Null(standard::Null),
 }
@@ -42,6 +48,9 @@ macro_rules! of_shader {
             Shader::ThinDielectric($shader) => $call,
             Shader::RoughDielectric($shader) => $call,
             Shader::Plastic($shader) => $call,
+            Shader::RoughPlastic($shader) => $call,
+            Shader::Principled($shader) => $call,
+            Shader::PrincipledThin($shader) => $call,
             Shader::Null($shader) => $call,
         }
     };
@@ -349,7 +358,8 @@ impl Nested {
 #[derive(Clone, Debug)]
 struct Recipe {
     material: Material,
-    inner_reflectance: Real,
+    /// What of a coat does not depend on colours.
+    coated: Option<Box<standard::RoughPlastic>>,
     shader: Ready,
 }
 
@@ -438,11 +448,7 @@ impl Recipe {
         if matches!(material, Material::TwoSided { .. }) || depth > MAX_DEPTH {
             return None;
         }
-        let inner_reflectance = match material {
-            Material::Plastic { eta, .. } => standard::Plastic::inner_reflectance(*eta),
-            _ => 0.0,
-        };
-        let mut recipe = Self { material: material.clone(), inner_reflectance, shader: Ready::Varying };
+        let mut recipe = Self { material: material.clone(), coated: coated(material).map(Box::new), shader: Ready::Varying };
         if let Some(nested) = Nested::new(materials, material, depth, roster) {
             recipe.shader = Ready::Made(Box::new(nested?));
         } else if let Material::Plugin(shader) = material {
@@ -469,6 +475,7 @@ impl Recipe {
     fn anisotropic(&self) -> bool {
         match &self.material {
             Material::RoughConductor { .. } | Material::RoughDielectric { .. } => true,
+            Material::Principled(of) | Material::PrincipledThin(of) => !of.anisotropic.is(0.0),
             Material::Plugin(shader) => !shader.module.manifest().isotropic,
             _ => false,
         }
@@ -519,12 +526,41 @@ impl Recipe {
                     microfacet: microfacet(*distribution, alpha_u, alpha_v, uv),
                 })
             }
-            Material::Plastic { eta, diffuse_reflectance, specular_reflectance, nonlinear } => Shader::Plastic(standard::Plastic {
-                eta: *eta,
-                diffuse_reflectance: diffuse_reflectance.at(uv),
-                specular_reflectance: specular_reflectance.at(uv),
-                nonlinear: *nonlinear,
-                inner_reflectance: self.inner_reflectance,
+            Material::Plastic { diffuse_reflectance, specular_reflectance, .. }
+            | Material::RoughPlastic { diffuse_reflectance, specular_reflectance, .. } => {
+                let Some(coated) = &self.coated else { return Shader::Null(standard::Null) };
+                let (diffuse_reflectance, specular_reflectance) = (diffuse_reflectance.at(uv), specular_reflectance.at(uv));
+                let plastic = standard::Plastic { diffuse_reflectance, specular_reflectance, ..coated.plastic };
+                match self.material {
+                    Material::Plastic { .. } => Shader::Plastic(plastic),
+                    _ => Shader::RoughPlastic(standard::RoughPlastic { plastic, ..**coated }),
+                }
+            }
+            Material::Principled(of) => Shader::Principled(standard::Principled {
+                base_color: of.base_color.at(uv),
+                roughness: share(&of.roughness, uv),
+                anisotropic: share(&of.anisotropic, uv),
+                metallic: share(&of.metallic, uv),
+                spec_trans: share(&of.spec_trans, uv),
+                eta: of.eta.at(uv)[0],
+                spec_tint: share(&of.spec_tint, uv),
+                sheen: share(&of.sheen, uv),
+                sheen_tint: share(&of.sheen_tint, uv),
+                flatness: share(&of.flatness, uv),
+                clearcoat: share(&of.clearcoat, uv),
+                clearcoat_gloss: share(&of.clearcoat_gloss, uv),
+            }),
+            Material::PrincipledThin(of) => Shader::PrincipledThin(standard::PrincipledThin {
+                base_color: of.base_color.at(uv),
+                roughness: share(&of.roughness, uv),
+                anisotropic: share(&of.anisotropic, uv),
+                spec_trans: share(&of.spec_trans, uv),
+                eta: of.eta.at(uv)[0],
+                spec_tint: share(&of.spec_tint, uv),
+                sheen: share(&of.sheen, uv),
+                sheen_tint: share(&of.sheen_tint, uv),
+                flatness: share(&of.flatness, uv),
+                diff_trans: of.diff_trans.at(uv)[0].clamp(0.0, 2.0),
             }),
             // Modules and those that are made of others are not looked up.
             _ => Shader::Null(standard::Null),
@@ -540,11 +576,26 @@ pub(super) fn set_textured(sandbox: &Sandbox, id: ShaderId, textures: &[Textured
     }
 }
 
-fn microfacet(distribution: Distribution, alpha_u: &Texture, alpha_v: &Texture, uv: Vec2) -> standard::Microfacet {
-    let distribution = match distribution {
+/// What a coat's index and roughness say, its colours left open.
+fn coated(material: &Material) -> Option<standard::RoughPlastic> {
+    let (eta, nonlinear, distribution, alpha) = match material {
+        Material::Plastic { eta, nonlinear, .. } => (*eta, *nonlinear, Distribution::Ggx, 0.0),
+        Material::RoughPlastic { eta, nonlinear, distribution, alpha, .. } => (*eta, *nonlinear, *distribution, *alpha),
+        _ => return None,
+    };
+    let white = Spectrum::ONE;
+    Some(standard::RoughPlastic::new(eta, white, white, nonlinear, slopes(distribution), alpha))
+}
+
+fn slopes(distribution: Distribution) -> standard::Distribution {
+    match distribution {
         Distribution::Ggx => standard::Distribution::Ggx,
         Distribution::Beckmann => standard::Distribution::Beckmann,
-    };
+    }
+}
+
+fn microfacet(distribution: Distribution, alpha_u: &Texture, alpha_v: &Texture, uv: Vec2) -> standard::Microfacet {
+    let distribution = slopes(distribution);
     standard::Microfacet { distribution, alpha_u: alpha_u.at(uv)[0], alpha_v: alpha_v.at(uv)[0] }
 }
 

@@ -10,6 +10,9 @@
 //! | [`ThinDielectric`] | both boundaries of a thin slab at once |
 //! | [`RoughDielectric`] | a boundary of microfacets between two media |
 //! | [`Plastic`] | a smooth dielectric coat over a diffuse base |
+//! | [`RoughPlastic`] | a rough dielectric coat over a diffuse base |
+//! | [`Principled`] | what artists steer materials with |
+//! | [`PrincipledThin`] | the same for thin things |
 //! | [`Null`] | lets light pass as if nothing were there |
 //! | [`Blend`] | two surfaces in one, or a mask |
 //! | [`Bent`] | a surface whose normal is turned |
@@ -27,8 +30,9 @@
 //! side that the normal points to. The definitions are those of Mitsuba 3, so that one scene gives one image in both.
 //!
 //! Each of them that fits ABI 1.0 is also built as a module of its own, from `modules/`: the same code on the same
-//! numbers, so the same image to the last bit. Two do not fit: [`Directional`], since a profile of the ABI has no deltas,
-//! and [`Envmap`], since a plugin is given numbers and no images.
+//! numbers, so the same image to the last bit. Some do not fit: [`Directional`], since a profile of the ABI has no deltas,
+//! [`Envmap`], since a plugin is given numbers and no images, [`RoughPlastic`], since its table would be made for every call, [`Blend`] and
+//! [`Bent`], since they are made of others. [`Principled`] and [`PrincipledThin`] are no modules yet.
 #![no_std]
 #![allow(clippy::neg_cmp_op_on_partial_ord, reason = "`!(x > 0.0)` refuses NaN too")]
 #[cfg(test)]
@@ -44,8 +48,11 @@ pub mod light;
 pub mod microfacet;
 pub mod null;
 pub mod plastic;
+pub mod principled;
+pub mod principled_thin;
 pub mod rough_conductor;
 pub mod rough_dielectric;
+pub mod rough_plastic;
 pub mod thin_dielectric;
 
 #[cfg(test)]
@@ -60,6 +67,9 @@ pub use light::{Area, Constant, Directional, Envmap, Isotropic, Spot};
 pub use microfacet::{Distribution, Microfacet};
 pub use null::Null;
 pub use plastic::Plastic;
+pub use principled::Principled;
+pub use principled_thin::PrincipledThin;
 pub use rough_conductor::RoughConductor;
 pub use rough_dielectric::RoughDielectric;
+pub use rough_plastic::RoughPlastic;
 pub use thin_dielectric::ThinDielectric;

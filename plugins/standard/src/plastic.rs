@@ -52,7 +52,7 @@ impl Plastic {
 
     /// The coat's part of the colours; the base has the rest.
     #[inline]
-    fn coat_part(&self) -> Real {
+    pub(crate) fn coat_part(&self) -> Real {
         let (specular, diffuse) = (self.specular_reflectance.mean(), self.diffuse_reflectance.mean());
         if specular > 0.0 { specular / (specular + diffuse) } else { 0.0 }
     }
@@ -74,7 +74,7 @@ impl Plastic {
 
     /// f π / ((1 − R(ω_o)) (1 − R(ω_i))).
     #[inline]
-    fn base(&self) -> Spectrum {
+    pub(crate) fn base(&self) -> Spectrum {
         let scale = 1.0 / sqr(self.eta);
         self.diffuse_reflectance.map(|rho| {
             let again = if self.nonlinear { rho * self.inner_reflectance } else { self.inner_reflectance };

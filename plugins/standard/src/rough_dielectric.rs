@@ -28,15 +28,15 @@ pub struct RoughDielectric {
 }
 
 /// One pair of directions, and the microfacet normal between them; ω_o is above.
-struct Pair {
+pub(crate) struct Pair {
     /// ω_o·m.
-    out: Real,
+    pub(crate) out: Real,
     /// |(ω_o + η ω_i)·m|² for refraction; 1 for reflection.
     length2: Real,
     /// ω_i·m.
     back: Real,
     /// The microfacet's reflectance.
-    reflectance: Real,
+    pub(crate) reflectance: Real,
     /// D(m).
     density: Real,
 }
@@ -55,7 +55,7 @@ impl RoughDielectric {
 
     /// `wo.z` > 0. `None` where no microfacet joins the two.
     #[inline]
-    fn pair(&self, wo: Vec3, wi: Vec3, index: RelativeIndex) -> Option<Pair> {
+    pub(crate) fn pair(&self, wo: Vec3, wi: Vec3, index: RelativeIndex) -> Option<Pair> {
         let reflected = wi.z > 0.0;
         let between = if reflected { wo + wi } else { wo + wi * index.eta };
         let m = normalize(between)?;
@@ -87,7 +87,7 @@ impl RoughDielectric {
     /// Everything but the colours, for `wo.z` > 0: f |cos θ_i| for importance / (colour · power share), and what
     /// `pdf` and `pdf_rev` are.
     #[inline]
-    fn densities(&self, wo: Vec3, wi: Vec3, eta: Real, pair: &Pair) -> Densities {
+    pub(crate) fn densities(&self, wo: Vec3, wi: Vec3, eta: Real, pair: &Pair) -> Densities {
         let (out, back) = (self.microfacet.visibility(wo), self.microfacet.visibility(wi));
         let reflect = self.reflection_chance(pair.reflectance);
         let (jacobian, jacobian_rev, chance) = if wi.z > 0.0 {
@@ -100,25 +100,25 @@ impl RoughDielectric {
             masked: back * wi.z.abs(),
             pdf_of_facet: pair.density * out * jacobian,
             chance,
-            pdf_rev: pair.density * back * jacobian_rev * chance,
+            rev_of_facet: pair.density * back * jacobian_rev,
         }
     }
 }
 
 /// What one pair of directions is worth.
-struct Densities {
+pub(crate) struct Densities {
     /// G1(ω_i).
-    masked: Real,
+    pub(crate) masked: Real,
     /// How densely ω_i is made once reflection or refraction is chosen.
-    pdf_of_facet: Real,
+    pub(crate) pdf_of_facet: Real,
     /// The chance of that choice.
     chance: Real,
-    /// How densely ω_o is made from ω_i, its chance included.
-    pdf_rev: Real,
+    /// How densely ω_o is made from ω_i, once the same is chosen.
+    pub(crate) rev_of_facet: Real,
 }
 
 #[inline(always)]
-fn flipped(w: Vec3) -> Vec3 {
+pub(crate) fn flipped(w: Vec3) -> Vec3 {
     vec3(w.x, w.y, -w.z)
 }
 
@@ -146,7 +146,7 @@ impl Bsdf for RoughDielectric {
         Scatter {
             value: colour * (densities.pdf_of_facet * densities.masked),
             pdf: PerSolidAngle(pdf),
-            pdf_rev: PerSolidAngle(densities.pdf_rev),
+            pdf_rev: PerSolidAngle(densities.rev_of_facet * densities.chance),
         }
     }
 
@@ -189,7 +189,10 @@ impl Bsdf for RoughDielectric {
         Some(Scattered {
             wi: if above { wi } else { flipped(wi) },
             weight: weight * (densities.masked / densities.chance),
-            made: Made::Smooth { pdf: PerSolidAngle(densities.pdf_of_facet * densities.chance), pdf_rev: PerSolidAngle(densities.pdf_rev) },
+            made: Made::Smooth {
+                pdf: PerSolidAngle(densities.pdf_of_facet * densities.chance),
+                pdf_rev: PerSolidAngle(densities.rev_of_facet * densities.chance),
+            },
             eta: refracted,
             lobe,
         })

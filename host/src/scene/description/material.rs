@@ -150,6 +150,25 @@ pub enum Material {
         /// Whether inner reflections saturate the base's colour.
         nonlinear: bool,
     },
+    /// A rough dielectric coat over a diffuse base.
+    RoughPlastic {
+        /// Index inside / index outside.
+        eta: f32,
+        /// The base.
+        diffuse_reflectance: Texture,
+        /// Scales the coat's reflection.
+        specular_reflectance: Texture,
+        /// Whether inner reflections saturate the base's colour.
+        nonlinear: bool,
+        /// Of microfacets.
+        distribution: Distribution,
+        /// Roughness.
+        alpha: f32,
+    },
+    /// What artists steer materials with.
+    Principled(Box<Principled>),
+    /// The same for thin things.
+    PrincipledThin(Box<Principled>),
     /// Lets light pass as if nothing were there.
     Null,
     /// A module's.
@@ -207,13 +226,67 @@ impl Material {
             Self::RoughDielectric { specular_reflectance, specular_transmittance, alpha_u, alpha_v, .. } => {
                 vec![specular_reflectance, specular_transmittance, alpha_u, alpha_v]
             }
-            Self::Plastic { diffuse_reflectance, specular_reflectance, .. } => vec![diffuse_reflectance, specular_reflectance],
+            Self::Plastic { diffuse_reflectance, specular_reflectance, .. }
+            | Self::RoughPlastic { diffuse_reflectance, specular_reflectance, .. } => vec![diffuse_reflectance, specular_reflectance],
+            Self::Principled(of) | Self::PrincipledThin(of) => of.textures().into(),
             Self::Plugin(plugin) => plugin.textures.iter().map(|parameter| &parameter.texture).collect(),
             Self::Mask { opacity: texture, .. }
             | Self::Blend { weight: texture, .. }
             | Self::Bent { map: NormalMap::Normals(texture) | NormalMap::Heights(texture, _), .. } => vec![texture],
             Self::Null | Self::TwoSided { .. } => vec![],
         }
+    }
+}
+
+/// What a principled surface is steered with; of a texture that is no colour the first band counts. See [`bidir_standard::Principled`].
+#[derive(Clone, Debug)]
+#[allow(missing_docs, reason = "they are told where they are used")]
+pub struct Principled {
+    pub base_color: Texture,
+    pub roughness: Texture,
+    pub anisotropic: Texture,
+    /// 0 in thin things.
+    pub metallic: Texture,
+    pub spec_trans: Texture,
+    pub eta: Texture,
+    pub spec_tint: Texture,
+    pub sheen: Texture,
+    pub sheen_tint: Texture,
+    pub flatness: Texture,
+    /// 0 in thin things.
+    pub clearcoat: Texture,
+    /// 0 in thin things.
+    pub clearcoat_gloss: Texture,
+    /// 0 but in thin things.
+    pub diff_trans: Texture,
+}
+
+impl Principled {
+    fn textures(&self) -> [&Texture; 13] {
+        let Self { base_color, roughness, anisotropic, metallic, spec_trans, eta, spec_tint, sheen, sheen_tint, .. } = self;
+        let Self { flatness, clearcoat, clearcoat_gloss, diff_trans, .. } = self;
+        [
+            base_color,
+            roughness,
+            anisotropic,
+            metallic,
+            spec_trans,
+            eta,
+            spec_tint,
+            sheen,
+            sheen_tint,
+            flatness,
+            clearcoat,
+            clearcoat_gloss,
+            diff_trans,
+        ]
+    }
+}
+
+impl Texture {
+    /// Whether its first band is that everywhere.
+    pub fn is(&self, value: f32) -> bool {
+        matches!(self, Self::Constant(color) if color[0] == value)
     }
 }
 

@@ -73,7 +73,8 @@ fn a_mirror_is_found_from_both_ends_with_one_chance() {
         for camera in directions().into_iter().filter(|camera| camera.z > 0.0) {
             let Some(there) = bent.sample(camera, [0.5; 3], Carried::Radiance) else { continue };
             let Made::Delta { chance, chance_rev } = there.made else { panic!("{there:?}") };
-            let again: Vec<_> = [0.01, 0.99].into_iter().filter_map(|u| bent.sample(there.wi, [0.5, 0.5, u], Carried::Importance)).collect();
+            let again: Vec<_> =
+                [0.01, 0.99].into_iter().filter_map(|u| bent.sample(there.wi, [0.5, 0.5, u], Carried::Importance)).collect();
             let back = again.iter().find(|back| normalize(back.wi - camera).is_none_or(|_| (back.wi - camera).length() < 1e-3));
             let Some(back) = back else { panic!("{normal}, {camera}: {there:?} {again:?}") };
             let Made::Delta { chance: light, chance_rev: light_rev } = back.made else { panic!("{back:?}") };

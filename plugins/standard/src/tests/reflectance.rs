@@ -2,8 +2,11 @@
 
 use bidir_sdk::{Bsdf, Carried, Real, Spectrum};
 
-use super::{direction, directions, numbers, surfaces::all};
-use crate::{Conductor, Dielectric, Diffuse, Plastic, ThinDielectric, fresnel};
+use super::{
+    direction, directions, numbers,
+    surfaces::{all, microfacets, rough_glass},
+};
+use crate::{Conductor, Dielectric, Diffuse, Plastic, ThinDielectric, fresnel, rough_plastic::Coat};
 
 fn reflect(cos: Real, eta: Real) -> fresnel::Boundary {
     fresnel::dielectric(cos, fresnel::RelativeIndex::seen_from(eta, 1.0))
@@ -96,7 +99,9 @@ fn nothing_gives_more_than_it_gets() {
     for surface in all() {
         for wo in directions() {
             let (mean, error) = albedo(&*surface.bsdf, wo, 4_000);
-            assert!(mean < 1.0 + 1e-5 + 4.5 * error, "{}, wo {wo}: {mean} ± {error}", surface.name);
+            // Burley's surface adds its reflection to a base that is not dimmed by it.
+            let most = if surface.name.starts_with("principled") { 1.5 } else { 1.0 };
+            assert!(mean < most + 1e-5 + 4.5 * error, "{}, wo {wo}: {mean} ± {error}", surface.name);
         }
     }
 }
@@ -129,5 +134,22 @@ fn refraction_scales_radiance_alone() {
         let (radiance, importance) = (sample(Carried::Radiance), sample(Carried::Importance));
         assert!((radiance.weight.mean() * eta * eta - 1.0 as Real).abs() < 1e-6);
         assert!((importance.weight.mean() - 1.0).abs() < 1e-6 && (importance.eta - eta).abs() < 1e-6);
+    }
+}
+
+#[test]
+fn the_table_of_a_rough_coat_is_what_the_boundary_lets_through() {
+    for microfacet in microfacets(&[(0.05, 0.05), (0.2, 0.2), (0.6, 0.6)]) {
+        let (glass, coat) = (rough_glass(1.5, microfacet), Coat::new(&microfacet, 1.5));
+        for cos in [1.0, 0.83, 0.47, 0.21, 0.08] {
+            let count = 100_000;
+            let passed = |i| {
+                let sample = glass.sample(direction(cos, 0.3), numbers(7, i), Carried::Importance);
+                sample.filter(|sample| sample.wi.z < 0.0).map_or(0.0, |sample| f64::from(sample.weight[0]))
+            };
+            let sampled = (0..count).map(passed).sum::<f64>() / count as f64;
+            let table = f64::from(coat.transmittance(cos));
+            assert!((sampled - table).abs() < 5e-3, "{microfacet:?}, cos {cos}: {sampled} against {table}");
+        }
     }
 }

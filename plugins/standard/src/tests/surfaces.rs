@@ -95,7 +95,51 @@ pub fn all() -> Vec<Surface> {
         ));
     }
     blends(&mut out);
+    principled(&mut out);
+    for (distribution, alpha) in [(Distribution::Beckmann, 0.0), (Distribution::Beckmann, 0.1), (Distribution::Ggx, 0.5)] {
+        for nonlinear in [false, true] {
+            let plastic = RoughPlastic::new(1.5, TINT, WHITE, nonlinear, distribution, alpha);
+            out.push(surface(format!("rough plastic {distribution:?} {alpha} {nonlinear}"), plastic, 1.0));
+        }
+    }
     out
+}
+
+/// Nothing but a diffuse base under a dielectric's reflection.
+const PLAIN: Principled = Principled {
+    base_color: TINT,
+    roughness: 0.5,
+    anisotropic: 0.0,
+    metallic: 0.0,
+    spec_trans: 0.0,
+    eta: 1.5,
+    spec_tint: 0.0,
+    sheen: 0.0,
+    sheen_tint: 0.0,
+    flatness: 0.0,
+    clearcoat: 0.0,
+    clearcoat_gloss: 0.0,
+};
+
+fn principled(out: &mut Vec<Surface>) {
+    let metal = Principled { metallic: 0.8, anisotropic: 0.7, spec_tint: 0.5, ..PLAIN };
+    let cloth = Principled { roughness: 0.9, sheen: 0.3, sheen_tint: 0.5, flatness: 0.6, ..PLAIN };
+    let coated = Principled { roughness: 0.8, clearcoat: 1.0, clearcoat_gloss: 0.0, ..PLAIN };
+    for (name, bsdf) in [("plain", PLAIN), ("metal", metal), ("cloth", cloth), ("coated", coated)] {
+        out.push(surface(format!("principled {name}"), bsdf, 1.0));
+    }
+    for eta in [1.5, 0.7] {
+        let glass = Principled { spec_trans: 0.8, eta, ..PLAIN };
+        out.push(surface(format!("principled glass {eta}"), glass, eta));
+        out.push(surface(format!("principled clear glass {eta}"), Principled { spec_trans: 1.0, clearcoat: 0.5, ..glass }, eta));
+    }
+    for (spec_trans, diff_trans, sheen) in [(0.0, 0.0, 0.2), (0.5, 0.8, 0.2), (1.0, 0.0, 0.0), (0.0, 2.0, 0.0)] {
+        let Principled { base_color, roughness, anisotropic, spec_tint, .. } = metal;
+        let (sheen_tint, flatness, eta) = (0.5, 0.4, 1.4);
+        let thin =
+            PrincipledThin { base_color, roughness, anisotropic, spec_trans, eta, spec_tint, sheen, sheen_tint, flatness, diff_trans };
+        out.push(surface(format!("principled thin {spec_trans} {diff_trans}"), thin, 1.0));
+    }
 }
 
 fn blends(out: &mut Vec<Surface>) {
