@@ -140,8 +140,37 @@ fn a_parameter_of_the_wrong_type_is_told_with_the_right_one() {
 #[test]
 fn an_unknown_plugin_is_told_with_its_neighbour_and_a_known_one_with_what_to_use() {
     assert!(error("<bsdf type=\"ruffconductor\"/>").contains("did you mean \"roughconductor\"?"));
-    assert!(error("<bsdf type=\"principled\"/>").contains("not supported; use"));
+    assert!(error("<bsdf type=\"measured\"/>").contains("not supported; use"));
     assert!(error("<medium type=\"homogeneous\"/>").contains("media are not supported"));
+}
+
+#[test]
+fn a_material_made_of_others_has_to_have_them() {
+    let matt = "<bsdf type=\"diffuse\"/>";
+    let hills = "<texture type=\"checkerboard\" name=\"hills\"/>";
+    let glass = "<bsdf type=\"dielectric\"/>";
+    let cases = [
+        ("mask", String::new(), "mask holds 0 materials; put one <bsdf> into it"),
+        ("blendbsdf", format!("{matt}<float name=\"weight\" value=\"0.5\"/>"), "blendbsdf holds 1 materials; put two <bsdf> into it"),
+        ("blendbsdf", matt.repeat(2), "weight"),
+        ("blendbsdf", format!("{}<float name=\"weight\" value=\"1.5\"/>", matt.repeat(2)), "every band must lie within 0 … 1"),
+        ("normalmap", matt.to_owned(), "put one <texture type=\"bitmap\" name=\"normalmap\"> into it"),
+        ("bumpmap", format!("{matt}{hills}"), "bumpmap takes a bitmap"),
+        ("twosided", format!("<bsdf type=\"mask\">{matt}</bsdf>"), "twosided holds mask, which lets light through"),
+        (
+            "twosided",
+            format!("<bsdf type=\"blendbsdf\"><float name=\"weight\" value=\"0.5\"/>{matt}{glass}</bsdf>"),
+            "which lets light through",
+        ),
+        ("principled", "<float name=\"eta\" value=\"1.5\"/><float name=\"specular\" value=\"0.5\"/>".to_owned(), "keep either of them"),
+        ("principled", "<float name=\"roughness\" value=\"2\"/>".to_owned(), "every band must lie within 0 … 1"),
+        ("principledthin", "<float name=\"metallic\" value=\"1\"/>".to_owned(), "has no parameter \"metallic\""),
+        ("roughplastic", "<float name=\"alpha\" value=\"-0.1\"/>".to_owned(), "write 0 or more"),
+    ];
+    for (kind, inside, words) in cases {
+        let error = error_in("bsdf", kind, &inside);
+        assert!(error.contains(words), "{kind}: {error}");
+    }
 }
 
 #[test]

@@ -78,6 +78,27 @@ impl Until {
     }
 }
 
+/// What a render by one stage said of its own error.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Seen {
+    /// How it was sampled.
+    pub stage: Stage,
+    /// Samples per pixel.
+    pub samples: f64,
+    /// Its estimated relMSE.
+    pub error: f64,
+}
+
+impl Seen {
+    /// How much noisier it is than a pilot says, in relMSE times samples per pixel. That is of light too rare for the pilot; and what is so
+    /// rare most plans make about as seldom as each other.
+    fn beyond(&self, evidence: &Evidence) -> f64 {
+        let told = evidence.errors(&[(self.stage, self.samples)])[0];
+        let beyond = self.error * self.samples - told;
+        if beyond.is_finite() { beyond.max(0.0) } else { 0.0 }
+    }
+}
+
 /// A plan that was looked at.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Candidate {
@@ -107,6 +128,8 @@ pub struct Choice {
     pub costs: Costs,
     /// Camera paths of the pilot.
     pub camera_paths: usize,
+    /// How much of every error, times samples per pixel, the render saw and the pilot did not.
+    pub beyond: f64,
     /// What each kind of join costs and saves.
     pub joins: Vec<Worth>,
     /// What calls of plugins take, module by module.
@@ -171,14 +194,23 @@ fn settled(all: &[Candidate], samples: usize, stays: impl Fn(&Candidate) -> bool
     staying.filter(|staying| staying.efficiency() * margin(samples) >= best.efficiency()).or(Some(best)).copied()
 }
 
-/// A plan for what the pilot saw and what it took: the stage under way, unless one of the open ones is clearly better.
-pub fn choose(open: &[Stage], evidence: &Evidence, costs: &Costs, until: Until, under_way: Option<&Stage>) -> Option<Choice> {
+/// A plan for what the pilot saw and what it took, and what the render saw beyond that: the stage under way, unless one of the open ones is
+/// clearly better.
+pub fn choose(
+    open: &[Stage],
+    evidence: &Evidence,
+    costs: &Costs,
+    until: Until,
+    under_way: Option<&Stage>,
+    seen: Option<&Seen>,
+) -> Option<Choice> {
+    let beyond = seen.map_or(0.0, |seen| seen.beyond(evidence));
     let look = |stages: &[Stage]| -> Vec<Candidate> {
         let plans: Vec<_> = stages.iter().map(|stage| (*stage, until.samples(costs.of(stage)))).collect();
         let errors = evidence.errors(&plans);
         let candidate = |(stage, error): (&Stage, f64)| Candidate {
             stage: *stage,
-            error: error.is_finite().then_some(error.max(0.0)),
+            error: error.is_finite().then_some(error.max(0.0) + beyond),
             cost: costs.of(stage),
         };
         stages.iter().zip(errors).map(candidate).collect()
@@ -204,7 +236,7 @@ pub fn choose(open: &[Stage], evidence: &Evidence, costs: &Costs, until: Until, 
         error_without: left.error.zip(chosen.error).map(|(without, with)| without / with.max(f64::MIN_POSITIVE)),
     });
     let (joins, camera_paths) = (joins.collect(), evidence.samples());
-    Some(Choice { chosen, joins, costs: *costs, camera_paths, candidates: all, plugins: Vec::new(), without_plugins: None })
+    Some(Choice { chosen, joins, costs: *costs, camera_paths, beyond, candidates: all, plugins: Vec::new(), without_plugins: None })
 }
 
 impl Stage {
@@ -276,7 +308,7 @@ mod tests {
     #[test]
     fn light_paths_run_where_they_pay() {
         let open = open(&ROOM, None);
-        let choose = |shares| choose(&open, &evidence(shares), &COSTS, Until::Samples(32.0), None).unwrap().chosen.stage;
+        let choose = |shares| choose(&open, &evidence(shares), &COSTS, Until::Samples(32.0), None, None).unwrap().chosen.stage;
         // What the camera finds as well as anything.
         assert_eq!(choose([0.2, 0.78, 0.01, 0.01, 0.0]).lens_splat, 0.0);
         // What it hardly ever finds.
@@ -284,6 +316,19 @@ mod tests {
         assert!(found.lens_splat > 0.0 && found.connection == 0.0, "{found:?}");
         let connected = choose([0.001, 0.0, 0.989, 0.01, 0.0]);
         assert!(connected.connection > 0.0, "{connected:?}");
+    }
+
+    #[test]
+    fn where_all_plans_are_noisy_alike_a_cheap_one_is_better() {
+        let (open, evidence) = (open(&ROOM, None), evidence([0.001, 0.0, 0.0, 0.999, 0.0]));
+        let choose = |seen: Option<&Seen>| choose(&open, &evidence, &COSTS, Until::Samples(32.0), None, seen).unwrap();
+        let first = choose(None);
+        let told = evidence.errors(&[(first.chosen.stage, 16.0)])[0] / 16.0;
+        let seen = |error| Seen { stage: first.chosen.stage, samples: 16.0, error };
+        let (as_told, noisier) = (choose(Some(&seen(told))), choose(Some(&seen(10.0 * told))));
+        assert!(as_told.beyond < 1e-9 && as_told.chosen.stage == first.chosen.stage);
+        assert!((noisier.beyond / (9.0 * 16.0 * told) - 1.0).abs() < 1e-9, "{}", noisier.beyond);
+        assert!(noisier.chosen.cost < first.chosen.cost, "{:?} {:?}", noisier.chosen, first.chosen);
     }
 
     #[test]

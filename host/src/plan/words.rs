@@ -67,7 +67,7 @@ fn against(choice: &Choice) -> String {
 
 /// The plan card: what was chosen, what it rests on, and what would change it.
 pub fn card(choice: &Choice) -> Vec<String> {
-    let Choice { chosen, candidates, costs, camera_paths, joins, plugins, without_plugins } = choice;
+    let Choice { chosen, candidates, costs, camera_paths, beyond, joins, plugins, without_plugins } = choice;
     let mut lines = vec![
         format!("auto: {}", stage(&chosen.stage)),
         format!(
@@ -83,6 +83,9 @@ pub fn card(choice: &Choice) -> Vec<String> {
             time(costs.connections)
         ),
     ];
+    if *beyond > 0.0 {
+        lines.push(format!("{beyond:.3} of that the render saw and the pilot did not; it is taken to be the same by every plan"));
+    }
     for worth in joins {
         let saved = match worth.error_without {
             Some(times) => format!("without it the error would be {times:.2} times as large"),

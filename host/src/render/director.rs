@@ -2,13 +2,13 @@
 
 use std::time::{Duration, Instant};
 
-use bidir_kernel::Strategy;
+use bidir_kernel::{Join, Strategy};
 
 use super::{Job, Status, Target, pilot::Pilot};
 use crate::{
     plan::{
         Plan, Stage,
-        choice::{Choice, Until, broadest, choose, open},
+        choice::{Choice, Seen, Until, broadest, choose, open},
         effects::Effects,
     },
     scene::{
@@ -28,8 +28,8 @@ pub struct Leg {
 
 /// Says between passes what comes next.
 pub trait Director {
-    /// From the sample on that stands in `status`.
-    fn next(&mut self, scene: &Scene, job: &Job, status: &Status) -> Leg;
+    /// From the sample on that stands in `status`; `error` estimates the relMSE of what is on the film.
+    fn next(&mut self, scene: &Scene, job: &Job, status: &Status, error: &dyn Fn() -> Option<f64>) -> Leg;
 }
 
 /// The job's own strategy from beginning to end.
@@ -37,7 +37,7 @@ pub trait Director {
 pub struct Always;
 
 impl Director for Always {
-    fn next(&mut self, _: &Scene, job: &Job, _: &Status) -> Leg {
+    fn next(&mut self, _: &Scene, job: &Job, _: &Status, _: &dyn Fn() -> Option<f64>) -> Leg {
         Leg { strategy: job.strategy, end: u32::MAX }
     }
 }
@@ -52,7 +52,7 @@ pub struct Given {
 }
 
 impl Director for Given {
-    fn next(&mut self, _: &Scene, job: &Job, status: &Status) -> Leg {
+    fn next(&mut self, _: &Scene, job: &Job, status: &Status, _: &dyn Fn() -> Option<f64>) -> Leg {
         match self.plan.at(status.samples) {
             Some((stage, end)) => Leg { strategy: stage.strategy(&self.integrator), end },
             None => Leg { strategy: job.strategy, end: u32::MAX },
@@ -75,6 +75,13 @@ const PATHS_PER_PIXEL: f64 = 150.0;
 /// Samples per pixel that a render is taken to need where nobody knows.
 const UNKNOWN: f64 = 256.0;
 
+/// What the render itself saw is held against the pilot when it has taken so many times as long as the pilot, and then whenever it has
+/// taken `AGAIN` times as long.
+const HELD_AGAINST: f64 = 5.0;
+
+/// Samples per pixel from which a film tells its error.
+const TELLING: u32 = 8;
+
 /// Pilots come again when a render has taken so many times as long as when the last one came.
 const AGAIN: f64 = 4.0;
 
@@ -90,6 +97,10 @@ pub struct Auto {
     pixels: f64,
     /// When the next pilot comes, in time that the render took.
     again: Duration,
+    /// When what the render saw is held against the pilot next.
+    held_against: Duration,
+    /// What the render saw, while it had one stage.
+    seen: Option<Seen>,
     /// Wall-clock time of all pilots.
     pub elapsed: Duration,
 }
@@ -107,6 +118,8 @@ impl Auto {
             integrator: description.integrator.clone(),
             pixels: f64::from(crop.width) * f64::from(crop.height),
             again: Duration::MAX,
+            held_against: Duration::MAX,
+            seen: None,
             elapsed: Duration::ZERO,
         }
     }
@@ -124,11 +137,20 @@ impl Auto {
     /// Looks, and chooses; `from` is the first sample of the stage that may begin.
     pub fn look(&mut self, scene: &Scene, job: &Job, time: Duration, pixels: u64, from: u32) {
         let start = Instant::now();
-        let under_way = self.plan.last().copied();
         if self.open.len() > 1 {
             self.pilot.look(scene, job, time.mul_f64(LOOKING), pixels);
+        }
+        self.choose(job, from);
+        self.elapsed += start.elapsed();
+    }
+
+    /// Chooses by what was seen so far.
+    fn choose(&mut self, job: &Job, from: u32) {
+        let under_way = self.plan.last().copied();
+        if self.open.len() > 1 {
+            let (evidence, costs) = (self.pilot.evidence(), self.pilot.costs());
             // Where nothing varies that was seen, there may be something that was not.
-            self.choice = choose(&self.open, self.pilot.evidence(), &self.pilot.costs(), self.until(job), under_way.as_ref())
+            self.choice = choose(&self.open, evidence, &costs, self.until(job), under_way.as_ref(), self.seen.as_ref())
                 .filter(|choice| choice.chosen.error.is_some_and(|error| error > 0.0))
                 .map(|choice| choice.with_plugins(&self.pilot.plugins()));
         }
@@ -139,6 +161,20 @@ impl Auto {
         if under_way.is_none_or(|stage| stage.techniques() != chosen.techniques()) {
             self.plan.stages.push(Stage { from, ..chosen });
         }
+    }
+
+    /// Holds what the render saw against the pilot. Of a film with several stages nobody knows which it owes its noise to; and where some
+    /// kind of join is not made, the noise may be what that would take away.
+    fn hold_against(&mut self, job: &Job, status: &Status, error: &dyn Fn() -> Option<f64>) {
+        let start = Instant::now();
+        if let [stage] = *self.plan.stages.as_slice()
+            && Join::ALL.iter().all(|&join| stage.effort(join) > 0.0 || self.open.iter().all(|open| open.effort(join) == 0.0))
+            && let Some(error) = error()
+        {
+            self.seen = Some(Seen { stage, samples: f64::from(status.samples), error });
+            self.choose(job, status.samples);
+        }
+        self.held_against = status.elapsed.mul_f64(AGAIN);
         self.elapsed += start.elapsed();
     }
 
@@ -156,6 +192,7 @@ impl Auto {
         let (time, pixels) = self.first(job.target);
         self.look(scene, job, time, pixels, 0);
         self.again = self.elapsed.mul_f64(2.0 / SHARE);
+        self.held_against = self.elapsed.mul_f64(HELD_AGAINST);
     }
 
     /// How long the first pilot may take on each thread, and how many pixels it may look at.
@@ -170,13 +207,18 @@ impl Auto {
 }
 
 impl Director for Auto {
-    fn next(&mut self, scene: &Scene, job: &Job, status: &Status) -> Leg {
+    fn next(&mut self, scene: &Scene, job: &Job, status: &Status, error: &dyn Fn() -> Option<f64>) -> Leg {
         if self.plan.stages.is_empty() {
             self.begin(scene, job);
-        } else if status.elapsed >= self.again && self.open.len() > 1 {
-            let time = status.elapsed.mul_f64(SHARE).saturating_sub(self.elapsed);
-            self.look(scene, job, time, u64::MAX / 2, status.samples);
-            self.again = status.elapsed.mul_f64(AGAIN);
+        } else if self.open.len() > 1 {
+            if status.elapsed >= self.held_against && status.samples >= TELLING {
+                self.hold_against(job, status, error);
+            }
+            if status.elapsed >= self.again {
+                let time = status.elapsed.mul_f64(SHARE).saturating_sub(self.elapsed);
+                self.look(scene, job, time, u64::MAX / 2, status.samples);
+                self.again = status.elapsed.mul_f64(AGAIN);
+            }
         }
         let stage = self.plan.last().copied().unwrap_or(Stage::of(&job.strategy.techniques));
         Leg { strategy: stage.strategy(&self.integrator), end: u32::MAX }

@@ -107,7 +107,7 @@ pub fn directed<S: Canvas>(
         Target::Time(_) | Target::Error(_) => u32::MAX,
     };
     while status.samples < last {
-        let leg = director.next(scene, job, &status);
+        let leg = director.next(scene, job, &status, &|| film.error());
         status.elapsed = start.elapsed();
         let job = &Job { strategy: leg.strategy, ..*job };
         let end = pass_end(status.samples).min(last).min(leg.end).min(affordable(&status, job.target, pace));

@@ -27,6 +27,11 @@ use crate::{
 pub trait Canvas: Store + Sized {
     /// One thread's share.
     fn share(share: Share<'_, Self>) -> Worked;
+
+    /// What it tells of its own relMSE; `None` if it cannot, or cannot yet.
+    fn error(&self) -> Option<f64> {
+        None
+    }
 }
 
 impl Canvas for Film {
@@ -35,6 +40,10 @@ impl Canvas for Film {
             Numbers::Sobol => share.with::<Sobol>(),
             Numbers::Independent => share.with::<Apart>(),
         }
+    }
+
+    fn error(&self) -> Option<f64> {
+        self.noise().map(|noise| noise.relmse)
     }
 }
 
