@@ -78,6 +78,15 @@ fn filter(ids: &Ids, element: &Element) -> Result<Filter> {
     };
     let filter = match of.kind() {
         "box" => Filter::Box,
+        "mitchell" => Filter::Cubic { b: of.float("B")?.unwrap_or(1.0 / 3.0), c: of.float("C")?.unwrap_or(1.0 / 3.0) },
+        "catmullrom" => Filter::Cubic { b: 0.0, c: 0.5 },
+        "lanczos" => {
+            let lobes = of.whole("lobes", 1)?.unwrap_or(3);
+            if lobes as f64 > MAX_RADIUS {
+                return Err(of.error("lobes", format!("is {lobes}"), format!("it must not be above {MAX_RADIUS}")));
+            }
+            Filter::Lanczos { lobes: lobes as f64 }
+        }
         "tent" => Filter::Tent { radius: bounded("radius", 1.0, MAX_RADIUS)? },
         _ => Filter::Gaussian { stddev: bounded("stddev", 0.5, MAX_RADIUS / 4.0)? },
     };

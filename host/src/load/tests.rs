@@ -103,7 +103,7 @@ fn a_film_without_pixels_or_with_too_many_is_one_clear_error() {
         ("<integer name=\"crop_offset_x\" value=\"700\"/>", "reaches beyond the image"),
         ("<integer name=\"crop_offset_x\" value=\"-1\"/>", "is -1"),
         ("<string name=\"pixel_format\" value=\"luminance\"/>", "luminance"),
-        ("<rfilter type=\"mitchell\"/>", "not supported"),
+        ("<rfilter type=\"lanczos\"><integer name=\"lobes\" value=\"99\"/></rfilter>", "must not be above"),
         ("<rfilter type=\"tent\"><float name=\"radius\" value=\"1e9\"/></rfilter>", "1000000000"),
     ] {
         let error = film(content).unwrap_err().to_string();

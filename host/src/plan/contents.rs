@@ -180,6 +180,9 @@ fn camera(description: &Description) -> Camera {
             Filter::Box => "box".to_owned(),
             Filter::Tent { radius } => format!("tent, radius {radius}"),
             Filter::Gaussian { stddev } => format!("gaussian, stddev {stddev}"),
+            Filter::Cubic { b: 0.0, c: 0.5 } => "catmullrom".to_owned(),
+            Filter::Cubic { b, c } => format!("mitchell, B {b:.3}, C {c:.3}"),
+            Filter::Lanczos { lobes } => format!("lanczos, {lobes} lobes"),
         },
     }
 }

@@ -146,6 +146,18 @@ pub enum Filter {
         /// σ, in pixels.
         stddev: f64,
     },
+    /// Mitchell and Netravali's (1988), with radius 2 and negative lobes: B = C = 1/3 is theirs, B = 0 and C = 1/2 Catmull and Rom's.
+    Cubic {
+        /// How blurred.
+        b: f64,
+        /// How much it rings.
+        c: f64,
+    },
+    /// sinc(x) sinc(x/n) with a radius of n, and negative lobes.
+    Lanczos {
+        /// n.
+        lobes: f64,
+    },
 }
 
 /// A shape, its surface and its light.
