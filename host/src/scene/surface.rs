@@ -155,7 +155,8 @@ impl Surface<'_> {
                 let masked = standard::Blend { weight: share(opacity, self.uv), first: standard::Null, second: part(bsdf) };
                 question.put(&masked, turn)
             }
-            Nested::Blend { weight, parts: [first, second] } => {
+            Nested::Blend { weight, parts } => {
+                let [first, second] = &**parts;
                 question.put(&standard::Blend { weight: share(weight, self.uv), first: part(first), second: part(second) }, turn)
             }
             Nested::Bent { map, bending: Bending { flips, shadowed }, bsdf } => {
@@ -320,7 +321,7 @@ enum Ready {
 #[derive(Clone, Debug)]
 enum Nested {
     Mask { opacity: Texture, bsdf: Finish },
-    Blend { weight: Texture, parts: [Finish; 2] },
+    Blend { weight: Texture, parts: Box<[Finish; 2]> },
     Bent { map: NormalMap, bending: Bending, bsdf: Finish },
 }
 
@@ -332,7 +333,7 @@ impl Nested {
             Material::Mask { opacity, bsdf } => part(*bsdf).map(|bsdf| Self::Mask { opacity: opacity.clone(), bsdf }),
             Material::Blend { weight, parts: [first, second] } => {
                 let parts = part(*first).and_then(|first| Some([first, part(*second)?]));
-                parts.map(|parts| Self::Blend { weight: weight.clone(), parts })
+                parts.map(|parts| Self::Blend { weight: weight.clone(), parts: Box::new(parts) })
             }
             Material::Bent { map, bending, bsdf } => part(*bsdf).map(|bsdf| Self::Bent { map: map.clone(), bending: *bending, bsdf }),
             _ => return None,
@@ -342,7 +343,7 @@ impl Nested {
     fn parts(&self) -> &[Finish] {
         match self {
             Self::Mask { bsdf, .. } | Self::Bent { bsdf, .. } => std::slice::from_ref(bsdf),
-            Self::Blend { parts, .. } => parts,
+            Self::Blend { parts, .. } => &**parts,
         }
     }
 

@@ -245,7 +245,8 @@ impl Bsdf for Principled {
     fn eval(&self, wo: Vec3, wi: Vec3, carried: Carried) -> Scatter {
         let above = wo.z > 0.0;
         let (opaque, through) = self.parts();
-        if wo.z == 0.0 || wi.z == 0.0 || !(through > 0.0) && !(above && wi.z > 0.0) {
+        let somewhere = through > 0.0 || above && wi.z > 0.0;
+        if wo.z == 0.0 || wi.z == 0.0 || !somewhere {
             return Scatter::NONE;
         }
         let (wo, wi) = if above { (wo, wi) } else { (flipped(wo), flipped(wi)) };

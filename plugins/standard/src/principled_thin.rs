@@ -102,7 +102,7 @@ impl Bsdf for PrincipledThin {
         let seen = if above { wo } else { flipped(wo) };
         let shares = self.shares();
         let uv = [u[0], u[1]];
-        let facet = |passed: bool| Some(normalize(reflect(seen, self.slopes(passed).sample_visible(seen, uv)?))?);
+        let facet = |passed: bool| normalize(reflect(seen, self.slopes(passed).sample_visible(seen, uv)?));
         let up = |w: Vec3| (w.z > 0.0).then_some(w);
         let (wi, lobe) = if u[2] < shares.reflected {
             (up(facet(false)?)?, Lobe::GLOSSY_REFLECTION)
