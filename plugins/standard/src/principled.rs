@@ -229,13 +229,12 @@ impl Principled {
         }
     }
 
-    /// The coat's f cos θ_i and densities.
+    /// The coat's f cos θ_i and densities; `cos` is that of half the angle between the two, whose dot products with m cancel near grazing.
     #[inline]
-    fn coat(&self, wo: Vec3, wi: Vec3, m: Vec3) -> (Real, Real) {
+    fn coat(&self, wo: Vec3, wi: Vec3, m: Vec3, cos: Real) -> (Real, Real) {
         let density = self.coat_slopes().density(m);
         let masking = Microfacet { distribution: Distribution::Ggx, alpha_u: 0.25, alpha_v: 0.25 };
         let seen = masking.visibility(wo) * wo.z * masking.visibility(wi) * wi.z;
-        let cos = dot(wo, m);
         let fresnel = schlick(Spectrum::splat(0.04), cos, self.eta)[0];
         (0.25 * self.clearcoat * fresnel * density * seen * wi.z, 0.25 * density * m.z / cos)
     }
@@ -257,10 +256,11 @@ impl Bsdf for Principled {
             let rev = if wi.z > 0.0 { shares.main } else { self.shares(!above).main };
             return Scatter { value: main.value, pdf: PerSolidAngle(shares.main * main.pdf), pdf_rev: PerSolidAngle(rev * main.pdf_rev) };
         }
-        let Some(m) = normalize(wo + wi) else { return Scatter::NONE };
+        let between = wo + wi;
+        let Some(m) = normalize(between) else { return Scatter::NONE };
         let (mut value, mut pdf, mut pdf_rev) = (main.value, shares.main * main.pdf, shares.main * main.pdf_rev);
         if self.clearcoat > 0.0 {
-            let (coat, density) = self.coat(wo, wi, m);
+            let (coat, density) = self.coat(wo, wi, m, 0.5 * sqrt(dot(between, between)));
             value += Spectrum::splat(coat);
             pdf += shares.coat * density;
             pdf_rev += shares.coat * density;
