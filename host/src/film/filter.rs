@@ -56,8 +56,7 @@ impl Profile {
             Filter::Box => f64::from((-0.5..0.5).contains(&distance)),
             Filter::Tent { radius } => (1.0 - distance.abs() / radius).max(0.0),
             Filter::Gaussian { stddev } => (bell(distance, stddev) - self.edge).max(0.0),
-            Filter::Cubic { b, c } => cubic(distance.abs(), b, c),
-            Filter::Lanczos { lobes } => lanczos(distance.abs(), lobes),
+            Filter::Cubic { .. } | Filter::Lanczos { .. } => ringing(&self.filter, distance.abs()),
         }
     }
 
@@ -118,6 +117,21 @@ impl Profile {
         };
         half.copysign(x)
     }
+}
+
+/// A filter with negative lobes at x ≥ 0. Apart, so that the others stay short.
+#[inline(never)]
+fn ringing(filter: &Filter, x: f64) -> f64 {
+    match *filter {
+        Filter::Cubic { b, c } => cubic(x, b, c),
+        Filter::Lanczos { lobes } => lanczos(x, lobes),
+        _ => 0.0,
+    }
+}
+
+#[inline(never)]
+fn ringing_taps(filter: &Filter, distance: f64, weights: &mut [f64]) {
+    weights.iter_mut().enumerate().for_each(|(i, w)| *w = ringing(filter, (distance - i as f64).abs()));
 }
 
 /// At x ≥ 0.

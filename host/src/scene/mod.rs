@@ -19,7 +19,7 @@ pub mod view;
 
 use std::sync::Arc;
 
-use bidir_kernel::{Effects, Point, Ray};
+use bidir_kernel::{Effects, Frame, Point, Ray};
 use glam::DVec3;
 
 use crate::{
@@ -130,14 +130,14 @@ impl Scene {
 
     /// How coordinates lie on the surface at a hit; nothing unless its finish asks for that.
     #[inline(always)]
-    fn stretch(&self, ray: &Ray, hit: &RayHit, point: &Point, shape: &Shape) -> Stretch {
-        if shape.bumpy { self.stretch_of_bumps(ray, hit, point, shape) } else { Stretch::default() }
+    fn stretch(&self, ray: &Ray, hit: &RayHit, frame: &Frame, shape: &Shape) -> Stretch {
+        if shape.bumpy { self.stretch_of_bumps(ray, hit, frame, shape) } else { Stretch::default() }
     }
 
     #[inline(never)]
-    fn stretch_of_bumps(&self, ray: &Ray, hit: &RayHit, point: &Point, shape: &Shape) -> Stretch {
+    fn stretch_of_bumps(&self, ray: &Ray, hit: &RayHit, frame: &Frame, shape: &Shape) -> Stretch {
         let owner = self.owners[hit.primitive.0 as usize];
-        let (at, frame) = (self.geometry.surface(ray, hit), &point.frame);
+        let at = self.geometry.surface(ray, hit);
         match owner.triangle() {
             Some(triangle) => shape.stretch(&at, triangle, None, frame),
             None => {

@@ -1,15 +1,17 @@
 //! Presets: what a render is compiled for. There are few, and a scene is rendered with the smallest that covers it; any that covers
 //! it gives the same image, bit for bit.
 
-use bidir_kernel::{Bsdf, Camera, Effects, Light, Vec2};
+use bidir_kernel::{Bsdf, Camera, Effects, Frame, Light, Ray, Vec2};
 
 use crate::{
     plugin::Sandbox,
+    rays::RayHit,
     scene::{
         Scene,
         camera::SceneCamera,
         lights::{LightId, SceneLight},
         plain::{Lamp, Matt, Parts},
+        shape::Shape,
         surface::{Stretch, Surface},
     },
 };
@@ -34,8 +36,8 @@ pub trait Preset: Copy {
     /// How coordinates lie on a surface, if bumps may ask for it.
     type Stretch: Copy;
 
-    /// What is kept of that.
-    fn stretch(told: impl FnOnce() -> Stretch) -> Self::Stretch;
+    /// What is kept of what a scene tells of a hit.
+    fn stretch(scene: &Scene, ray: &Ray, hit: &RayHit, frame: Frame, shape: &Shape) -> Self::Stretch;
 
     /// The camera.
     fn camera<'v>(&'v self, scene: &'v Scene) -> &'v Self::Camera;
@@ -67,8 +69,8 @@ impl<const LIGHT_WALKS: bool> Preset for Any<LIGHT_WALKS> {
     type Stretch = Stretch;
 
     #[inline(always)]
-    fn stretch(told: impl FnOnce() -> Stretch) -> Stretch {
-        told()
+    fn stretch(scene: &Scene, ray: &Ray, hit: &RayHit, frame: Frame, shape: &Shape) -> Stretch {
+        scene.stretch(ray, hit, &frame, shape)
     }
 
     #[inline(always)]
@@ -102,7 +104,7 @@ impl<'a, const LIGHT_WALKS: bool> Preset for Plain<'a, LIGHT_WALKS> {
     type Stretch = ();
 
     #[inline(always)]
-    fn stretch(_: impl FnOnce() -> Stretch) {}
+    fn stretch(_: &Scene, _: &Ray, _: &RayHit, _: Frame, _: &Shape) {}
 
     #[inline(always)]
     fn camera<'v>(&'v self, _: &'v Scene) -> &'v Self::Camera {

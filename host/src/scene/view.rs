@@ -115,7 +115,7 @@ impl<'s, P: Preset> bidir_kernel::Scene for View<'s, P> {
         // The hit is read where it lies: `?` would copy it.
         let Some(hit) = &self.scene.geometry.closest(ray) else { return None };
         let (point, shape) = self.scene.met_shape(ray, hit);
-        let stretch = P::stretch(|| self.scene.stretch(ray, hit, &point, shape));
+        let stretch = P::stretch(self.scene, ray, hit, point.frame, shape);
         Some((point, Hit { shape, stretch }))
     }
 
