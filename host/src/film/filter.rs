@@ -129,11 +129,6 @@ fn ringing(filter: &Filter, x: f64) -> f64 {
     }
 }
 
-#[inline(never)]
-fn ringing_taps(filter: &Filter, distance: f64, weights: &mut [f64]) {
-    weights.iter_mut().enumerate().for_each(|(i, w)| *w = ringing(filter, (distance - i as f64).abs()));
-}
-
 /// At x ≥ 0.
 fn cubic(x: f64, b: f64, c: f64) -> f64 {
     if x < 1.0 {
