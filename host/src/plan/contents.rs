@@ -229,20 +229,16 @@ fn materials(description: &Description) -> (Vec<Materials>, usize) {
     for shape in description.all_shapes() {
         *wearers.entry(shape.material.0).or_default() += 1;
     }
-    let mut used: Vec<u32> = wearers.keys().copied().collect();
-    let parts_of = |id: u32| all.get(id as usize).into_iter().flat_map(Material::parts).map(|part| part.0);
+    let mut used: Vec<u32> = Vec::new();
     let mut kinds: Vec<Materials> = Vec::new();
     for (&id, &shapes) in &wearers {
         let id = MaterialId(id);
-        let mut next = used.len();
-        used.extend(parts_of(id.0));
-        while let Some(&part) = used.get(next).filter(|_| used.len() < 1 << 16) {
-            used.extend(parts_of(part));
-            next += 1;
-        }
+        let parts = with_parts(all, id);
+        used.extend(parts.iter().map(|(part, _)| part.0));
         let (kind, lobes) = (kind(all, id), lobe_names(lobes(all, id)));
-        let varies = |material: &&Material| material.textures().iter().any(|texture| !matches!(texture, Texture::Constant(_)));
-        let textured = usize::from(with_parts(all, id).iter().any(varies));
+        let varies =
+            |(_, material): &(MaterialId, &Material)| material.textures().iter().any(|texture| !matches!(texture, Texture::Constant(_)));
+        let textured = usize::from(parts.iter().any(varies));
         match kinds.iter_mut().find(|known| known.kind == kind && known.lobes == lobes) {
             Some(known) => {
                 known.count += 1;
@@ -257,7 +253,7 @@ fn materials(description: &Description) -> (Vec<Materials>, usize) {
     (kinds, used.len())
 }
 
-/// What a material is, and in brackets what it is made of.
+/// What a material is, and what it is made of.
 fn kind(materials: &[Material], id: MaterialId) -> String {
     let Some(material) = materials.get(id.0 as usize) else { return String::new() };
     let mut parts: Vec<_> = material.parts().iter().map(|part| kind(materials, *part)).collect();

@@ -100,7 +100,7 @@ impl Effects {
         self.glossy_transmission |= lobes.intersects(Lobe::GLOSSY_TRANSMISSION);
         self.delta_reflection |= lobes.intersects(Lobe::DELTA_REFLECTION);
         self.delta_transmission |= lobes.intersects(Lobe::DELTA_TRANSMISSION);
-        for material in with_parts(materials, id) {
+        for (_, material) in with_parts(materials, id) {
             match material {
                 Material::Dielectric { eta, .. } | Material::RoughDielectric { eta, .. } if *eta != 1.0 => self.refraction = true,
                 Material::Dielectric { .. } | Material::ThinDielectric { .. } | Material::Null | Material::Mask { .. } => {
@@ -162,24 +162,20 @@ impl Effects {
 }
 
 /// The material and all that it is made of, those before what they are made of.
-pub(super) fn with_parts(materials: &[Material], id: MaterialId) -> Vec<&Material> {
-    let mut all: Vec<&Material> = materials.get(id.0 as usize).into_iter().collect();
+pub(super) fn with_parts(materials: &[Material], id: MaterialId) -> Vec<(MaterialId, &Material)> {
+    let named = |id: MaterialId| Some((id, materials.get(id.0 as usize)?));
+    let mut all: Vec<_> = named(id).into_iter().collect();
     let mut next = 0;
-    while let Some(material) = all.get(next) {
-        // A description that was made by hand may have a circle, which no scene is built of.
-        let parts = if all.len() > MOST_PARTS { &[] } else { material.parts() };
-        all.extend(parts.iter().filter_map(|part| materials.get(part.0 as usize)));
+    while let Some((_, material)) = all.get(next) {
+        all.extend(material.parts().iter().filter_map(|part| named(*part)));
         next += 1;
     }
     all
 }
 
-/// More parts than a material that can be built may have.
-const MOST_PARTS: usize = 1 << 16;
-
 /// Every lobe that a material has anywhere; of a black diffuse one, none.
 pub fn lobes(materials: &[Material], id: MaterialId) -> Lobe {
-    with_parts(materials, id).into_iter().map(lobes_of).fold(Lobe::NONE, |all, lobes| all | lobes)
+    with_parts(materials, id).into_iter().map(|(_, material)| lobes_of(material)).fold(Lobe::NONE, |all, lobes| all | lobes)
 }
 
 /// Those of a material itself, without its parts'.
