@@ -121,6 +121,8 @@ rows! {
     bsdf_thindielectric
     bsdf_twosided
     emitter_area
+    emitter_area_mesh
+    emitter_area_textured
     emitter_constant
     emitter_directional
     emitter_envmap

@@ -43,7 +43,7 @@ pub(super) fn read(scene: Option<&Path>, from: &SceneArguments, stages: &mut Sta
     stages.loading(scene.unwrap_or(Path::new(WELCOME_NAME)));
     let library = library(from);
     let loaded = match scene {
-        Some(path) => load::load(path, &from.defines, &library)?,
+        Some(path) => load::load_watched(path, &from.defines, &library, &|done, of| stages.file(done, of))?,
         None => load::load_str(WELCOME, Path::new(WELCOME_NAME), None, &from.defines, &library)?,
     };
     stages.loaded();

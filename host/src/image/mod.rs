@@ -3,6 +3,7 @@
 pub mod montage;
 pub mod read;
 pub mod resize;
+pub mod texels;
 pub mod text;
 pub mod trim;
 pub mod write;

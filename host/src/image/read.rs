@@ -12,7 +12,10 @@ use bidir_kernel::Spectrum;
 use exr::prelude::{FlatSamples, Layer, MetaData, ReadChannels, ReadLayers, f16};
 use image::DynamicImage;
 
-use super::Image;
+use super::{
+    Image,
+    texels::{Packed, Texels},
+};
 use crate::error::{Error, Result};
 
 /// The most pixels that an image may have: 16384 × 8192.
@@ -61,6 +64,14 @@ pub enum Encoding {
 /// # Errors
 /// If the file cannot be read, is no image, or has more than [`MAX_PIXELS`].
 pub fn read(path: &Path, encoding: Encoding) -> Result<Pixels> {
+    Ok(packed(path, encoding)?.unpack())
+}
+
+/// Reads an image, and keeps it as densely as the file does.
+///
+/// # Errors
+/// As [`read`].
+pub fn packed(path: &Path, encoding: Encoding) -> Result<Packed> {
     let fail = |thing: String| Error::in_file(path, thing, REMEDY);
     let found = std::fs::metadata(path).map_err(|e| fail(format!("cannot be read ({e})")))?;
     if !found.is_file() {
@@ -86,7 +97,7 @@ pub fn picture(path: &Path) -> Result<Image> {
 ///
 /// # Errors
 /// If it is no image, or passes the limits.
-pub fn decode(bytes: &[u8], name: &Path, encoding: Encoding, limits: &Limits) -> Result<Pixels> {
+pub fn decode(bytes: &[u8], name: &Path, encoding: Encoding, limits: &Limits) -> Result<Packed> {
     let decoded = quietly(|| if bytes.starts_with(&EXR_MAGIC) { exr(bytes, limits) } else { other(bytes, name, encoding, limits) });
     decoded.map_err(|thing| Error::in_file(name, format!("cannot be decoded ({thing})"), REMEDY))
 }
@@ -117,7 +128,7 @@ fn check_size(width: u64, height: u64, limits: &Limits) -> std::result::Result<(
     }
 }
 
-fn exr(bytes: &[u8], limits: &Limits) -> std::result::Result<Pixels, String> {
+fn exr(bytes: &[u8], limits: &Limits) -> std::result::Result<Packed, String> {
     let text = |e: exr::error::Error| e.to_string();
     let meta = MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(text)?;
     let mut total = 0_u64;
@@ -145,12 +156,19 @@ fn exr(bytes: &[u8], limits: &Limits) -> std::result::Result<Pixels, String> {
     let layer = layer.ok_or("it has neither R, G, B nor Y")?;
     let (width, height) = (layer.size.x(), layer.size.y());
     let channels = channels(layer).unwrap_or_default();
-    let bands: Vec<Vec<f32>> = channels.iter().map(|c| floats(&layer.channel_data.list[*c].sample_data)).collect();
+    let bands: Vec<&FlatSamples> = channels.iter().map(|c| &layer.channel_data.list[*c].sample_data).collect();
     if bands.iter().any(|b| b.len() != width * height) {
         return Err("its channels differ in size".into());
     }
-    let values = (0..width * height).map(|at| Spectrum([bands[0][at], bands[bands.len() / 2][at], bands[bands.len() - 1][at]]));
-    Ok(Pixels { width: width as u32, height: height as u32, values: values.collect() })
+    let halves: Option<Vec<&[f16]>> = bands.iter().map(|band| if let FlatSamples::F16(v) = band { Some(&v[..]) } else { None }).collect();
+    let texels = match halves {
+        Some(halves) => Texels::halves(beside(&halves), bands.len()),
+        None => {
+            let floats: Vec<_> = bands.iter().map(|band| floats(band)).collect();
+            Texels::floats(beside(&floats), bands.len())
+        }
+    };
+    Ok(Packed { width: width as u32, height: height as u32, texels })
 }
 
 /// Which channels hold red, green and blue, or grey.
@@ -165,6 +183,12 @@ fn channels(layer: &Layer<exr::prelude::AnyChannels<FlatSamples>>) -> Option<Vec
     }
 }
 
+/// Bands that stand one after the other, pixel by pixel.
+fn beside<T: Copy>(bands: &[impl AsRef<[T]>]) -> Vec<T> {
+    let count = bands.first().map_or(0, |band| band.as_ref().len());
+    (0..count).flat_map(|at| bands.iter().map(move |band| band.as_ref()[at])).collect()
+}
+
 fn floats(samples: &FlatSamples) -> Vec<f32> {
     match samples {
         FlatSamples::F16(v) => v.iter().map(|s: &f16| s.to_f32()).collect(),
@@ -173,7 +197,7 @@ fn floats(samples: &FlatSamples) -> Vec<f32> {
     }
 }
 
-fn other(bytes: &[u8], path: &Path, encoding: Encoding, limits: &Limits) -> std::result::Result<Pixels, String> {
+fn other(bytes: &[u8], path: &Path, encoding: Encoding, limits: &Limits) -> std::result::Result<Packed, String> {
     let mut reader = image::ImageReader::new(Cursor::new(bytes));
     // TGA has no signature, so there the name decides.
     if let Ok(format) = image::ImageFormat::from_path(path) {
@@ -188,22 +212,19 @@ fn other(bytes: &[u8], path: &Path, encoding: Encoding, limits: &Limits) -> std:
     let decoded = reader.decode().map_err(|e| e.to_string())?;
     let (width, height) = (decoded.width(), decoded.height());
     check_size(width.into(), height.into(), limits)?;
-    let values = match decoded {
-        DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_) => decoded.to_rgb32f().pixels().map(|p| Spectrum(p.0)).collect(),
-        DynamicImage::ImageLuma16(_) | DynamicImage::ImageLumaA16(_) | DynamicImage::ImageRgb16(_) | DynamicImage::ImageRgba16(_) => {
-            decoded.to_rgb16().pixels().map(|p| Spectrum(p.0.map(|v| encoding.decode(f64::from(v) / 65535.0)))).collect()
-        }
-        _ => {
-            let table: Vec<f32> = (0..256).map(|v| encoding.decode(f64::from(v) / 255.0)).collect();
-            decoded.to_rgb8().pixels().map(|p| Spectrum(p.0.map(|v| table[usize::from(v)]))).collect()
-        }
+    let texels = match decoded {
+        DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_) => Texels::floats(decoded.into_rgb32f().into_raw(), 3),
+        DynamicImage::ImageLuma16(_) | DynamicImage::ImageLumaA16(_) => Texels::shorts(decoded.into_luma16().into_raw(), 1, encoding),
+        DynamicImage::ImageRgb16(_) | DynamicImage::ImageRgba16(_) => Texels::shorts(decoded.into_rgb16().into_raw(), 3, encoding),
+        DynamicImage::ImageLuma8(_) | DynamicImage::ImageLumaA8(_) => Texels::bytes(decoded.into_luma8().into_raw(), 1, encoding),
+        _ => Texels::bytes(decoded.into_rgb8().into_raw(), 3, encoding),
     };
-    Ok(Pixels { width, height, values })
+    Ok(Packed { width, height, texels })
 }
 
 impl Encoding {
-    /// IEC 61966-2-1.
-    fn decode(self, v: f64) -> f32 {
+    /// The linear value of a fraction; IEC 61966-2-1.
+    pub(super) fn decode(self, v: f64) -> f32 {
         let linear = match self {
             Self::Linear => v,
             Self::Srgb if v <= 0.04045 => v / 12.92,

@@ -6,7 +6,7 @@ use std::{
     sync::Arc,
 };
 
-use super::{group::Known, ids::Ids, properties::line, xml, xml::Element};
+use super::{ahead::Ahead, group::Known, ids::Ids, properties::line, xml, xml::Element};
 use crate::{
     error::{Error, Place, Result},
     plugin::Library,
@@ -33,6 +33,8 @@ pub(super) struct Context<'s> {
     pub(super) bitmaps: HashMap<String, Arc<Bitmap>>,
     pub(super) environments: HashMap<PathBuf, Arc<EnvironmentImage>>,
     pub(super) meshes: HashMap<String, Arc<Mesh>>,
+    /// Files that are read already.
+    pub(super) ahead: Ahead,
     /// Area lights that a shape has, by the serial of the element, and where that shape stands.
     attached: HashMap<u32, Place>,
     base: Option<PathBuf>,
@@ -55,6 +57,7 @@ impl<'s> Context<'s> {
             bitmaps: HashMap::new(),
             environments: HashMap::new(),
             meshes: HashMap::new(),
+            ahead: Ahead::default(),
             attached: HashMap::new(),
             base: base.map(Path::to_owned),
             search: search.to_vec(),

@@ -10,7 +10,7 @@ use super::{
     plugin,
     properties::{Properties, Value},
     suggest::list,
-    texture::named_here,
+    texture::{self, named_here},
     transform,
     xml::Element,
 };
@@ -18,7 +18,7 @@ use crate::{
     error::{Error, Place, Result},
     image::read::{Encoding, read},
     plugin::{EmitsFrom, Module},
-    scene::description::{Emitter, EmitterKind, EnvironmentImage, ShapeLight},
+    scene::description::{Emitter, EmitterKind, EnvironmentImage, ShapeLight, Texture},
 };
 
 /// The light of a shape.
@@ -31,19 +31,22 @@ pub(super) fn area(context: &mut Context, element: &Element, shape: &Place) -> R
             finish(of)?;
             light
         }
-        None => built_in_area(of, element)?,
+        None => built_in_area(context, of, element)?,
     };
     context.attach(element, shape)?;
     Ok(light)
 }
 
-fn built_in_area(of: Properties, element: &Element) -> Result<ShapeLight> {
+fn built_in_area(context: &mut Context, of: Properties, element: &Element) -> Result<ShapeLight> {
     catalog::check("emitter", of.kind(), &element.place)?;
     if of.kind() != "area" {
         let thing = format!("a {} emitter stands inside a shape", of.kind());
         return Err(Error::at(&element.place, thing, "only area lights are on shapes; move it out of the shape"));
     }
-    let radiance = of.radiance("radiance")?;
+    let radiance = match of.any("radiance") {
+        Some(Value::Object(_)) => texture::parameter(context, &of, "radiance", 1.0, texture::Range::NOT_NEGATIVE)?,
+        _ => Texture::Constant(of.radiance("radiance")?),
+    };
     finish(of)?;
     Ok(ShapeLight::Area(radiance))
 }
@@ -60,7 +63,7 @@ pub(super) fn emitter(context: &mut Context, element: &Element) -> Result<Option
         Some(module) => free_plugin(context, &of, module)?,
         None => {
             if of.kind() == "area" {
-                built_in_area(of, element)?;
+                built_in_area(context, of, element)?;
                 return Ok(None);
             }
             catalog::check("emitter", of.kind(), &element.place)?;

@@ -2,6 +2,7 @@
 //!
 //! What is written is either read as Mitsuba 3 reads it, or an error says where it stands, what it is and what to do instead.
 
+mod ahead;
 mod bsdf;
 pub mod catalog;
 mod context;
@@ -25,7 +26,8 @@ mod xml;
 
 use std::path::Path;
 
-use self::{context::Context, ids::Ids, properties::Properties};
+pub use self::ahead::Watch;
+use self::{ahead::Ahead, context::Context, ids::Ids, properties::Properties};
 use crate::{
     error::{Error, Result},
     plugin::Library,
@@ -47,8 +49,16 @@ pub struct Loaded {
 /// # Errors
 /// If anything in the file, or in the files that it names, cannot be read exactly as it is meant.
 pub fn load(path: &Path, defines: &[(String, String)], library: &Library) -> Result<Loaded> {
+    load_watched(path, defines, library, &|_, _| {})
+}
+
+/// As [`load`]; `watch` is told how many of the files that the scene names are read, by whichever thread has read one.
+///
+/// # Errors
+/// As [`load`].
+pub fn load_watched(path: &Path, defines: &[(String, String)], library: &Library, watch: Watch) -> Result<Loaded> {
     let text = xml::read_text(path, None)?;
-    load_str(&text, path, Some(path.parent().unwrap_or(Path::new(""))), defines, library)
+    read(&text, path, Some(path.parent().unwrap_or(Path::new(""))), defines, library, watch)
 }
 
 /// Reads the text of a scene; `name` is what messages call it, and `base_dir` where files are that it names, if it may name any.
@@ -56,10 +66,22 @@ pub fn load(path: &Path, defines: &[(String, String)], library: &Library) -> Res
 /// # Errors
 /// As [`load`].
 pub fn load_str(text: &str, name: &Path, base_dir: Option<&Path>, defines: &[(String, String)], library: &Library) -> Result<Loaded> {
+    read(text, name, base_dir, defines, library, &|_, _| {})
+}
+
+fn read(
+    text: &str,
+    name: &Path,
+    base_dir: Option<&Path>,
+    defines: &[(String, String)],
+    library: &Library,
+    watch: Watch,
+) -> Result<Loaded> {
     let tree = xml::read(text, name, base_dir, defines)?;
     let ids = Ids::collect(&tree.root)?;
     let scene = Properties::read(&tree.root, &ids)?;
     let mut context = Context::new(ids, library, base_dir, &tree.search);
+    context.ahead = Ahead::read(&tree.root, &context, watch);
 
     let integrator = match scene.object("integrator")? {
         Some(element) => integrator::integrator(&mut context, element)?,

@@ -13,7 +13,7 @@ use super::{
 };
 use crate::{
     error::{Error, Place, Result},
-    image::read::{Encoding, read},
+    image::read::{Encoding, packed},
     scene::description::{Bitmap, Texture, UvTransform, Wrap},
 };
 
@@ -77,12 +77,12 @@ pub(super) fn texture(context: &mut Context, element: &Element, range: Range, us
         }
         _ => {
             let bitmap = bitmap(context, &properties)?;
-            if let Some(at) = bitmap.texels.iter().position(|texel| !range.holds(texel)) {
+            if let Some(at) = bitmap.texels.iter().position(|texel| !range.holds(&texel)) {
                 let (x, y) = (at % bitmap.width as usize, at / bitmap.width as usize);
-                let count = bitmap.texels.iter().filter(|t| !range.holds(t)).count();
+                let count = bitmap.texels.iter().filter(|texel| !range.holds(texel)).count();
                 let file = properties.required_text("filename")?;
-                let thing =
-                    format!("{count} pixels of {file} are out of range, first {:?} at {x}, {y} from its upper left", bitmap.texels[at].0);
+                let first = bitmap.texels.get(at).unwrap_or_default().0;
+                let thing = format!("{count} pixels of {file} are out of range, first {first:?} at {x}, {y} from its upper left");
                 return Err(Error::at(user, thing, range.remedy()));
             }
             Texture::Bitmap(bitmap)
@@ -108,8 +108,9 @@ fn bitmap(context: &mut Context, properties: &Properties) -> Result<Arc<Bitmap>>
     if let Some(known) = context.bitmaps.get(&key) {
         return Ok(known.clone());
     }
-    let pixels = read(&path, encoding).map_err(|e| named_here(&e, properties.place_of("filename")))?;
-    let bitmap = Arc::new(Bitmap { width: pixels.width, height: pixels.height, texels: pixels.values, nearest, wrap, to_uv });
+    let ready = context.ahead.image(path.clone(), encoding);
+    let pixels = ready.map_or_else(|| packed(&path, encoding), Ok).map_err(|e| named_here(&e, properties.place_of("filename")))?;
+    let bitmap = Arc::new(Bitmap { width: pixels.width, height: pixels.height, texels: pixels.texels, nearest, wrap, to_uv });
     context.bitmaps.insert(key, bitmap.clone());
     Ok(bitmap)
 }

@@ -215,6 +215,6 @@ fn least(texture: &Texture) -> Real {
     match texture {
         Texture::Constant(value) => value[0],
         Texture::Checkerboard { color0, color1, .. } => color0[0].min(color1[0]),
-        Texture::Bitmap(bitmap) => bitmap.texels.iter().map(|texel| texel[0]).fold(Real::INFINITY, Real::min),
+        Texture::Bitmap(bitmap) => bitmap.texels.iter().map(|texel: Spectrum| texel[0]).fold(Real::INFINITY, Real::min),
     }
 }

@@ -16,10 +16,10 @@ use crate::{
         centre::centre,
         choice::Lights,
         collection::Collection,
-        description::{self, Description, EmitterKind, MaterialId, PluginShader, ShapeLight},
+        description::{self, Description, EmitterKind, MaterialId, PluginShader, ShapeLight, Texture},
         extent::LightExtent,
         group::Group,
-        lights::{EnvironmentTables, LightId, LightSource, PluginProfile, ProfileSource, Seat, environment_frame},
+        lights::{EnvironmentTables, LightId, LightSource, PluginProfile, ProfileSource, Seat, TexturedArea, environment_frame},
         plain::Parts,
         shape::Shape,
         surface::Finish,
@@ -181,7 +181,8 @@ impl Builder<'_> {
     /// The light of a shape. Their final names come once the black ones are dropped.
     fn light(&mut self, light: &ShapeLight, extent: LightExtent) -> LightId {
         let profile = match light {
-            ShapeLight::Area(radiance) => ProfileSource::Area(standard::Area { radiance: *radiance }),
+            ShapeLight::Area(Texture::Constant(radiance)) => ProfileSource::Area(standard::Area { radiance: *radiance }),
+            ShapeLight::Area(radiance) => ProfileSource::Textured(TexturedArea::new(radiance.clone())),
             ShapeLight::Plugin(shader) => self.profile(shader),
         };
         self.sources.push((Seat::Shape(extent), profile));

@@ -204,8 +204,8 @@ pub struct Instance {
 /// What leaves every point of a shape.
 #[derive(Clone, Debug)]
 pub enum ShapeLight {
-    /// The same radiance in every direction of the side that it faces, W/(m² sr).
-    Area(Spectrum),
+    /// The same radiance in every direction of the side that it faces, W/(m² sr); perhaps another one from place to place.
+    Area(Texture),
     /// What a plugin says.
     Plugin(PluginShader),
 }
@@ -213,7 +213,7 @@ pub enum ShapeLight {
 impl ShapeLight {
     /// Whether it can be seen at all, as far as the scene says.
     pub fn is_black(&self) -> bool {
-        matches!(self, Self::Area(radiance) if radiance.is_black())
+        matches!(self, Self::Area(radiance) if radiance.mean().is_black())
     }
 }
 

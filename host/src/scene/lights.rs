@@ -14,9 +14,10 @@ use bidir_standard as standard;
 use crate::{
     plugin::{Sandbox, ShaderId},
     scene::{
-        description::{EnvironmentImage, TexturedParameter},
+        description::{EnvironmentImage, Texture, TexturedParameter},
         extent::LightExtent,
         outflow::Outflow,
+        painted::{Cells, Painted},
         surface::set_textured,
     },
 };
@@ -66,6 +67,8 @@ pub enum Seat {
 pub enum ProfileSource {
     /// The same radiance in every direction of a hemisphere.
     Area(standard::Area),
+    /// The same in every direction of a hemisphere, and from place to place as a texture says.
+    Textured(TexturedArea),
     /// The same intensity in every direction.
     Isotropic(standard::Isotropic),
     /// A cone.
@@ -76,6 +79,21 @@ pub enum ProfileSource {
     Envmap(EnvironmentTables),
     /// A module's.
     Plugin(PluginProfile),
+}
+
+/// Radiance that a texture decides.
+#[derive(Clone, Debug)]
+pub struct TexturedArea {
+    radiance: Texture,
+    /// How a rectangle is sampled.
+    cells: Option<Cells>,
+}
+
+impl TexturedArea {
+    /// With a radiance in W/(m² sr).
+    pub fn new(radiance: Texture) -> Self {
+        Self { cells: Cells::of(&radiance), radiance }
+    }
 }
 
 /// A module's emission profile.
@@ -131,6 +149,8 @@ impl EnvironmentTables {
 pub enum SceneProfile<'a> {
     /// The same radiance in every direction of a hemisphere.
     Area(standard::Area),
+    /// The same in every direction of a hemisphere, and from place to place as a texture says.
+    Textured(&'a Texture),
     /// The same intensity in every direction.
     Isotropic(standard::Isotropic),
     /// A cone.
@@ -149,6 +169,7 @@ impl ProfileSource {
     pub fn asked<'a>(&'a self, sandbox: &'a Sandbox) -> SceneProfile<'a> {
         match self {
             Self::Area(profile) => SceneProfile::Area(*profile),
+            Self::Textured(profile) => SceneProfile::Textured(&profile.radiance),
             Self::Isotropic(profile) => SceneProfile::Isotropic(*profile),
             Self::Spot(profile) => SceneProfile::Spot(*profile),
             Self::Constant(profile) => SceneProfile::Constant(*profile),
@@ -165,6 +186,10 @@ macro_rules! of_profile {
     ($self:ident, $uv:ident, $profile:ident => $call:expr) => {
         match $self {
             SceneProfile::Area($profile) => $call,
+            SceneProfile::Textured(radiance) => {
+                let $profile = standard::Area { radiance: radiance.at($uv) };
+                $call
+            }
             SceneProfile::Isotropic($profile) => $call,
             SceneProfile::Spot($profile) => $call,
             SceneProfile::Constant($profile) => $call,
@@ -195,6 +220,8 @@ impl Profile for SceneProfile<'_> {
 pub enum SceneLight<'a> {
     /// On a shape.
     Area(AreaLight<&'a LightExtent, SceneProfile<'a>>),
+    /// On a rectangle that is not alike all over.
+    Painted(AreaLight<Painted<'a>, SceneProfile<'a>>),
     /// At a point.
     Point(PointLight<SceneProfile<'a>>),
     /// All around.
@@ -208,6 +235,7 @@ impl LightSource {
     pub fn new(seat: Seat, profile: ProfileSource, sandbox: &Sandbox) -> Self {
         let outflow = match (&seat, &profile) {
             (Seat::Directional(light), _) => Outflow { total: f64::from(light.irradiance.mean()), ..Outflow::NONE },
+            (_, ProfileSource::Textured(area)) => Outflow::of(&standard::Area { radiance: area.radiance.mean() }),
             (_, ProfileSource::Envmap(tables)) => Outflow { total: f64::from(tables.total()), ..Outflow::NONE },
             _ => Outflow::of(&profile.asked(sandbox)),
         };
@@ -222,6 +250,11 @@ impl LightSource {
     #[inline]
     pub fn asked<'a>(&'a self, sandbox: &'a Sandbox) -> SceneLight<'a> {
         match &self.seat {
+            Seat::Shape(LightExtent::Parallelogram(extent))
+                if let ProfileSource::Textured(TexturedArea { radiance, cells: Some(cells) }) = &self.profile =>
+            {
+                SceneLight::Painted(AreaLight { extent: Painted { extent, cells }, profile: SceneProfile::Textured(radiance) })
+            }
             Seat::Shape(extent) => SceneLight::Area(AreaLight { extent, profile: self.profile.asked(sandbox) }),
             Seat::Point { position, frame } => {
                 SceneLight::Point(PointLight { position: *position, frame: *frame, profile: self.profile.asked(sandbox) })
@@ -251,7 +284,7 @@ impl LightSource {
     pub fn kind(&self) -> &str {
         match (&self.seat, &self.profile) {
             (Seat::Directional(_), _) => "directional",
-            (_, ProfileSource::Area(_)) => "area",
+            (_, ProfileSource::Area(_) | ProfileSource::Textured(_)) => "area",
             (_, ProfileSource::Isotropic(_)) => "point",
             (_, ProfileSource::Spot(_)) => "spot",
             (_, ProfileSource::Constant(_)) => "constant",
@@ -265,6 +298,7 @@ macro_rules! of_light {
     ($self:ident, $light:ident => $call:expr) => {
         match $self {
             SceneLight::Area($light) => $call,
+            SceneLight::Painted($light) => $call,
             SceneLight::Point($light) => $call,
             SceneLight::Environment($light) => $call,
             SceneLight::Directional($light) => $call,

@@ -10,6 +10,7 @@ pub mod extent;
 mod group;
 pub mod lights;
 pub mod outflow;
+pub mod painted;
 pub mod plain;
 pub mod preset;
 pub mod shape;

@@ -28,6 +28,21 @@ impl Texture {
 }
 
 impl Texture {
+    /// Over a whole period; a bitmap's over its texels.
+    pub fn mean(&self) -> Spectrum {
+        match self {
+            Self::Constant(value) => *value,
+            Self::Bitmap(bitmap) => {
+                let mut sums = [0.0; 3];
+                for texel in bitmap.texels.iter() {
+                    sums.iter_mut().zip(texel.0).for_each(|(sum, band)| *sum += f64::from(band));
+                }
+                Spectrum(sums.map(|sum| (sum / bitmap.texels.len().max(1) as f64) as Real))
+            }
+            Self::Checkerboard { color0, color1, .. } => (*color0 + *color1) * 0.5,
+        }
+    }
+
     /// How fast its luminance grows with u and v.
     pub fn slope(&self, uv: Vec2) -> Vec2 {
         match self {
@@ -74,7 +89,7 @@ impl Bitmap {
     fn texel(&self, x: i64, y: i64) -> Spectrum {
         let x = wrapped(x, i64::from(self.width), self.wrap);
         let y = wrapped(y, i64::from(self.height), self.wrap);
-        self.texels.get(y * self.width as usize + x).copied().unwrap_or(Spectrum::BLACK)
+        self.texels.get(y * self.width as usize + x).unwrap_or(Spectrum::BLACK)
     }
 }
 

@@ -34,7 +34,7 @@ pub fn png(data: &[u8]) {
 fn image(data: &[u8], name: &str, promised: fn(f32) -> bool) {
     for encoding in [Encoding::Srgb, Encoding::Linear] {
         let mut pixels = match decode(data, Path::new(name), encoding, &LIMITS) {
-            Ok(pixels) => pixels,
+            Ok(packed) => packed.unpack(),
             Err(error) => return told(&error),
         };
         let count = u64::from(pixels.width) * u64::from(pixels.height);

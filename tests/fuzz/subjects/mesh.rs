@@ -9,7 +9,7 @@ use bidir::{
         mesh::{Format, Parsed, parse},
     },
     plugin::Library,
-    scene::description::{Description, Geometry, MaterialId, Mesh, Shape, ShapeLight},
+    scene::description::{Description, Geometry, MaterialId, Mesh, Shape, ShapeLight, Texture},
 };
 use bidir_kernel::{Ray, Scene as _, Segment, Spectrum};
 use glam::{DAffine3, DVec3};
@@ -78,7 +78,7 @@ fn scene(mesh: &Arc<Mesh>) -> Description {
     description.shapes.push(Shape {
         geometry: Geometry::Mesh { mesh: mesh.clone(), to_world: DAffine3::IDENTITY, flip_normals: false },
         material: MaterialId(0),
-        light: Some(ShapeLight::Area(Spectrum::ONE)),
+        light: Some(ShapeLight::Area(Texture::Constant(Spectrum::ONE))),
         name: "mesh".to_owned(),
         place: Place { file: name.to_owned(), position: None },
     });

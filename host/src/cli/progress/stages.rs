@@ -35,6 +35,13 @@ impl Stages {
         self.show(format!("loading {}", self.loaded));
     }
 
+    /// So many of the files that the scene names are read.
+    pub fn file(&self, done: usize, of: usize) {
+        if let Some(bar) = &self.current {
+            bar.set_message(format!("loading {}, {done} of {of} files", self.loaded));
+        }
+    }
+
     /// It is read; there may be warnings of it now.
     pub fn loaded(&mut self) {
         self.clear();

@@ -17,12 +17,23 @@ use crate::{
 const MAX_BYTES: u64 = 4 << 30;
 
 /// How a mesh is written.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub enum Format {
     /// Wavefront OBJ.
     Obj,
     /// Stanford PLY, ascii or binary.
     Ply,
+}
+
+impl Format {
+    /// That of a shape of this type.
+    pub(super) fn of(kind: &str) -> Option<Self> {
+        match kind {
+            "obj" => Some(Self::Obj),
+            "ply" => Some(Self::Ply),
+            _ => None,
+        }
+    }
 }
 
 /// A mesh out of a file.
@@ -45,6 +56,11 @@ pub fn parse(bytes: &[u8], format: Format, name: &Path) -> Result<Parsed> {
     };
     let dropped = check(&mut mesh, name)?;
     Ok(Parsed { mesh, dropped })
+}
+
+/// Reads a mesh's file.
+pub(super) fn read(path: &Path, format: Format) -> Result<Parsed> {
+    parse(&bytes(path)?, format, path)
 }
 
 /// Whether a mesh's v runs the other way than its file says.
@@ -77,8 +93,8 @@ pub(super) fn mesh(context: &mut Context, of: &Properties) -> Result<Arc<Mesh>> 
         return Ok(known.clone());
     }
     let here = |error: Error| named_here(&error, of.place_of("filename"));
-    let bytes = bytes(&path).map_err(here)?;
-    let Parsed { mut mesh, dropped } = parse(&bytes, format, &path).map_err(here)?;
+    let ready = context.ahead.mesh(path.clone(), format);
+    let Parsed { mut mesh, dropped } = ready.map_or_else(|| read(&path, format), Ok).map_err(here)?;
     if flip == FlipV::Yes {
         mesh.uvs.iter_mut().for_each(|uv| uv[1] = 1.0 - uv[1]);
     }

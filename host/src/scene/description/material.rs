@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use bidir_kernel::Spectrum;
 
-use crate::plugin::Module;
+use crate::{image::texels::Texels, plugin::Module};
 
 /// A material's name: its index in [`super::Description::materials`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -35,8 +35,8 @@ pub struct Bitmap {
     pub width: u32,
     /// In texels.
     pub height: u32,
-    /// Rows from the image's top, linear.
-    pub texels: Vec<Spectrum>,
+    /// Rows from the image's top.
+    pub texels: Texels,
     /// How it is read between texels.
     pub nearest: bool,
     /// How it goes on outside 0 … 1.
