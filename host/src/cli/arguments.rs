@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand};
 
 use super::plugin::templates;
-use crate::{plan::Named, render::Numbers};
+use crate::{plan::Named, render::Numbers, scene::description::Quantity};
 
 /// A bidirectional path tracer for Mitsuba 3 scenes.
 #[derive(Debug, Parser)]
@@ -87,12 +87,20 @@ pub struct Render {
     /// Render threads; as many as the machine has, unless told
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096))]
     pub threads: Option<u32>,
+    /// Layers beside the picture, with commas between, in the same EXR; or all
+    #[arg(long = "aov", value_name = "NAME", value_delimiter = ',', value_parser = aov_names())]
+    pub aovs: Vec<String>,
     /// Write what was done, and what it took, as JSON
     #[arg(long, value_name = "FILE.json")]
     pub stats: Option<PathBuf>,
     /// No progress; warnings stay
     #[arg(long)]
     pub quiet: bool,
+}
+
+/// What layers can hold.
+fn aov_names() -> clap::builder::PossibleValuesParser {
+    Quantity::ALL.map(Quantity::name).into_iter().chain(["all"]).collect::<Vec<_>>().into()
 }
 
 /// `bidir explain`

@@ -1,5 +1,7 @@
 //! `bidir render`.
 
+mod aovs;
+
 use std::{
     path::{Path, PathBuf},
     time::{Duration, Instant},
@@ -14,14 +16,16 @@ use crate::{
         stats::{self, CpuSeconds, Geometry, Seconds, Stats},
     },
     error::{Error, Result},
-    film::{Film, Noise},
+    film::{Both, Film, Noise, Pyramid},
     image::write::{self, Layers},
     load,
     plan::{Named, Plan, Stage, choice::Choice, effects::Effects, words},
     plugin::{Library, Strictness},
-    render::{self, Auto, Given, Job, Status, Target},
+    render::{self, Auto, Director, Given, Job, Status, Target},
     scene::{Scene, description::Description},
 };
+
+use aovs::{Aovs, Developed};
 
 /// The scene of a `render` without one.
 const WELCOME: &str = include_str!("../../../examples/scenes/welcome.xml");
@@ -119,6 +123,8 @@ pub(super) fn run(arguments: &Render) -> Result<Outcome> {
     let loading = Instant::now();
     let description = read(arguments.scene.as_deref(), &arguments.from, &mut stages)?;
     seconds.load = loading.elapsed().as_secs_f64();
+    let aovs = Aovs::new(&description, &arguments.aovs, &output)?;
+    let pyramid = aovs.pyramid(&description)?;
     let building = Instant::now();
     stages.building(&description);
     let film = Film::new(&description.film)?;
@@ -149,13 +155,13 @@ pub(super) fn run(arguments: &Render) -> Result<Outcome> {
         Some(plan) => {
             let mut director = Given { plan, integrator: description.integrator.clone() };
             (
-                render::directed(&scene, &film, &job, &mut director, &interrupt::flag(), report),
+                directed(&scene, &film, pyramid.as_ref(), &job, &mut director, report),
                 Planned { plan: director.plan, choice: None, elapsed: Duration::ZERO },
             )
         }
         None => {
             let mut director = Auto::new(&description, &Effects::of(&description, &scene));
-            let status = render::directed(&scene, &film, &job, &mut director, &interrupt::flag(), report);
+            let status = directed(&scene, &film, pyramid.as_ref(), &job, &mut director, report);
             (status, Planned { plan: director.plan().clone(), choice: director.choice().cloned(), elapsed: director.elapsed })
         }
     };
@@ -163,7 +169,8 @@ pub(super) fn run(arguments: &Render) -> Result<Outcome> {
     seconds.plan = planned.elapsed.as_secs_f64();
     seconds.render = status.elapsed.saturating_sub(planned.elapsed).as_secs_f64();
 
-    save(&output, &film, &status, job.seed)?;
+    let layers = aovs.develop(&description, &scene, &job, &film, pyramid.as_ref(), status.samples)?;
+    save(&output, &film, &layers, &status, job.seed)?;
     if film.refused() > 0 {
         eprintln!("warning: {} contributions were not finite and were refused", film.refused());
     }
@@ -203,7 +210,22 @@ pub(super) fn verbosity(quiet: bool) -> Verbosity {
     if quiet { Verbosity::Quiet } else { Verbosity::Shown }
 }
 
-fn save(output: &Path, film: &Film, status: &Status, seed: u64) -> Result<()> {
+/// Onto the film, and onto one that keeps techniques apart where there is one.
+fn directed(
+    scene: &Scene,
+    film: &Film,
+    pyramid: Option<&Pyramid>,
+    job: &Job,
+    director: &mut impl Director,
+    report: impl FnMut(&Status) -> Option<f64>,
+) -> Status {
+    match pyramid {
+        Some(pyramid) => render::directed(scene, &Both::new(film, pyramid), job, director, &interrupt::flag(), report),
+        None => render::directed(scene, film, job, director, &interrupt::flag(), report),
+    }
+}
+
+fn save(output: &Path, film: &Film, layers: &Developed, status: &Status, seed: u64) -> Result<()> {
     let image = film.develop();
     let note = |name: &str, value: String| (name.to_owned(), value);
     let notes = vec![
@@ -211,7 +233,7 @@ fn save(output: &Path, film: &Film, status: &Status, seed: u64) -> Result<()> {
         note("spp", status.samples.to_string()),
         note("seed", seed.to_string()),
     ];
-    write::write(output, &Layers { image: &image, named: Vec::new(), notes })
+    write::write(output, &Layers { image: &image, named: layers.layers(), notes })
 }
 
 #[expect(clippy::too_many_arguments, reason = "the statistics are about everything there is")]

@@ -91,6 +91,22 @@ impl Film {
         Some(Noise { relmse: trimmed_mean(&mut relative, TRIM), mse: sum / pixels })
     }
 
+    /// How far each value of [`Film::develop`] may be off, squared, as [`Film::noise`] has it; black before there are two samples.
+    pub fn variance(&self) -> Image {
+        let samples = lock(&self.tally).samples.map(|n| n as f64);
+        let mut image = Image::black(self.layout.crop.width, self.layout.crop.height);
+        if samples.contains(&0.0) {
+            return image;
+        }
+        let share = samples[0] * samples[1] / ((samples[0] + samples[1]) * (samples[0] + samples[1]));
+        let scales = samples.map(|n| self.scale(n));
+        self.each(|index, column, row, [even, odd]| {
+            let (a, b) = (scales[0].value(&even, column, row), scales[1].value(&odd, column, row));
+            image.pixels[index] = [0, 1, 2].map(|i| ((a[i] - b[i]) * (a[i] - b[i]) * share) as f32);
+        });
+        image
+    }
+
     fn scale(&self, samples: f64) -> Scale {
         let crop = &self.layout.crop;
         let reciprocals = |length| self.layout.masses(length).into_iter().map(|m| if m > 0.0 { 1.0 / m } else { 0.0 }).collect();

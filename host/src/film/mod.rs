@@ -33,6 +33,7 @@
 //! by h's mass inside.
 
 mod band;
+mod both;
 mod buffer;
 mod develop;
 pub mod filter;
@@ -46,6 +47,7 @@ use std::sync::{Arc, Mutex};
 
 use crate::{error::Result, scene::description::FilmSettings};
 
+pub use both::{Both, BothBuffers};
 pub use buffer::{Exposure, TileBuffer};
 pub use develop::Noise;
 pub use pyramid::{Pyramid, PyramidBuffer};

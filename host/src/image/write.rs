@@ -23,12 +23,32 @@ const WHAT: &str = "image";
 pub struct Layers<'a> {
     /// The picture: an EXR's unnamed layer.
     pub image: &'a Image,
-    /// Others of the same size, as channels `name.R`, `name.G`, `name.B`; EXR only.
-    pub named: Vec<(String, &'a Image)>,
+    /// Others of the same size; EXR only.
+    pub named: Vec<Layer<'a>>,
     /// What a reader should know (samples per pixel, seed, version), as `name=value` words in an EXR's `comments`.
     /// Other formats leave it out.
     pub notes: Vec<(String, String)>,
 }
+
+/// A layer beside the picture.
+#[derive(Clone, Debug)]
+pub struct Layer<'a> {
+    /// Channels are called `name.R` and so on.
+    pub name: String,
+    /// What comes after the name, for as many bands of the image; at most 3.
+    pub channels: &'a [&'a str],
+    /// As large as the picture.
+    pub image: &'a Image,
+}
+
+impl<'a> Layer<'a> {
+    /// A layer of colours.
+    pub fn rgb(name: impl Into<String>, image: &'a Image) -> Self {
+        Self { name: name.into(), channels: &RGB, image }
+    }
+}
+
+const RGB: [&str; 3] = ["R", "G", "B"];
 
 impl<'a> From<&'a Image> for Layers<'a> {
     fn from(image: &'a Image) -> Self {
@@ -84,11 +104,11 @@ fn check_layers(path: &Path, format: Format, layers: &Layers) -> Result<()> {
         return Err(Error::in_file(path, "only an EXR holds more than one layer", "choose .exr"));
     }
     let Image { width, height, .. } = *layers.image;
-    let images = || std::iter::once(layers.image).chain(layers.named.iter().map(|(_, image)| *image));
+    let images = || std::iter::once(layers.image).chain(layers.named.iter().map(|layer| layer.image));
     if width == 0 || height == 0 || images().any(|i| i.pixels.len() != width as usize * height as usize) {
         return Err(Error::in_file(path, "an image needs pixels, and its layers one size", "this is a bug; please report it"));
     }
-    if let Some((name, image)) = layers.named.iter().find(|(_, image)| (image.width, image.height) != (width, height)) {
+    if let Some(Layer { name, image, .. }) = layers.named.iter().find(|layer| (layer.image.width, layer.image.height) != (width, height)) {
         let thing = format!("layer {name} has {}×{} pixels, the image {width}×{height}", image.width, image.height);
         return Err(Error::in_file(path, thing, "this is a bug; please report it"));
     }
@@ -97,10 +117,10 @@ fn check_layers(path: &Path, format: Format, layers: &Layers) -> Result<()> {
 
 fn write_exr(out: impl Write + Seek, layers: &Layers) -> std::result::Result<(), String> {
     let mut channels = ex::SmallVec::new();
-    let unnamed = std::iter::once((String::new(), layers.image));
-    let named = layers.named.iter().map(|(name, image)| (format!("{name}."), *image));
-    for (prefix, image) in unnamed.chain(named) {
-        for (band, letter) in ["R", "G", "B"].into_iter().enumerate() {
+    let unnamed = std::iter::once((String::new(), &RGB[..], layers.image));
+    let named = layers.named.iter().map(|layer| (format!("{}.", layer.name), layer.channels, layer.image));
+    for (prefix, letters, image) in unnamed.chain(named) {
+        for (band, letter) in letters.iter().take(3).enumerate() {
             let samples = image.pixels.iter().map(|pixel| pixel[band]).collect();
             channels.push(ex::AnyChannel::new(text(&format!("{prefix}{letter}"))?, ex::FlatSamples::F32(samples)));
         }

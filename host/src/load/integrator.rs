@@ -1,9 +1,15 @@
 //! `<integrator>`: how far paths go.
 
-use super::{catalog, context::Context, properties::Properties, xml::Element};
+use super::{
+    catalog,
+    context::Context,
+    properties::Properties,
+    suggest::{did_you_mean, list},
+    xml::Element,
+};
 use crate::{
     error::{Error, Result},
-    scene::description::Integrator,
+    scene::description::{Aov, Integrator, Quantity, Words},
 };
 
 /// The integrator that an element describes.
@@ -36,9 +42,7 @@ pub(super) fn integrator(context: &mut Context, element: &Element) -> Result<Int
 /// What stands inside an `aov`.
 fn around(context: &mut Context, of: Properties) -> Result<Integrator> {
     let place = of.place();
-    if of.text("aovs")?.is_some_and(|aovs| !aovs.trim().is_empty()) {
-        context.warn(of.place_of("aovs"), "aovs are not written");
-    }
+    let aovs = aovs(&of)?;
     let Some(inner) = of.object("integrator")? else {
         return Err(Error::at(place, "aov holds no integrator", "put one into it, such as <integrator type=\"path\"/>"));
     };
@@ -46,5 +50,27 @@ fn around(context: &mut Context, of: Properties) -> Result<Integrator> {
         return Err(Error::at(&inner.place, "an aov stands inside an aov", "keep one of them"));
     }
     of.finish()?;
-    integrator(context, inner)
+    Ok(Integrator { aovs, ..integrator(context, inner)? })
+}
+
+/// `name:quantity` and so on, with commas between.
+fn aovs(of: &Properties) -> Result<Vec<Aov>> {
+    let Some(written) = of.text("aovs")? else { return Ok(Vec::new()) };
+    let mut found: Vec<Aov> = Vec::new();
+    for item in written.split(',').map(str::trim).filter(|item| !item.is_empty()) {
+        let Some((name, quantity)) = item.split_once(':') else {
+            return Err(of.error("aovs", format!("has \"{item}\""), "write a layer's name and what it holds, such as nn:sh_normal"));
+        };
+        let known = Quantity::ALL.map(Quantity::name);
+        let Some(quantity) = Quantity::named(quantity) else {
+            let remedy = format!("{}it can be {}", did_you_mean(quantity, &known), list(&known));
+            return Err(of.error("aovs", format!("asks for \"{quantity}\""), remedy));
+        };
+        if !name.chars().all(|c| c.is_ascii_graphic()) || name.is_empty() || found.iter().any(|one| one.name == name) {
+            let remedy = "give each layer a name of its own, of letters and digits";
+            return Err(of.error("aovs", format!("names a layer \"{name}\""), remedy));
+        }
+        found.push(Aov { name: name.to_owned(), of: quantity, words: Words::Mitsuba });
+    }
+    Ok(found)
 }

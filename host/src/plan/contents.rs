@@ -134,7 +134,7 @@ pub struct Lights {
 impl Contents {
     /// Those of a scene, and of the description it was built from.
     pub fn of(description: &Description, scene: &Scene) -> Self {
-        let Integrator { kind, max_depth, rr_depth, hide_emitters } = description.integrator.clone();
+        let Integrator { kind, max_depth, rr_depth, hide_emitters, .. } = description.integrator.clone();
         let (materials, worn) = materials(description);
         let (lights, stats) = (lights(scene), scene.build_stats());
         let shining: usize = lights.iter().map(|light| light.count).sum();

@@ -4,6 +4,7 @@
 //! so that an image depends on scene, seed, samples and plan alone.
 
 mod director;
+mod features;
 mod numbers;
 mod passes;
 mod pilot;
@@ -22,6 +23,7 @@ use crate::{
 };
 
 pub use director::{Always, Auto, Director, Given, Leg};
+pub use features::feature;
 pub use numbers::{Numbers, Scrambled, Sobol, Source};
 pub use passes::pass_end;
 pub(crate) use pilot::{Nobody, scattered};

@@ -14,7 +14,7 @@ use super::{
     storage,
 };
 use crate::{
-    film::{Exposure, Film, Pyramid, Store},
+    film::{Both, Exposure, Film, Pyramid, Store},
     plugin::{Fault, Quarantine},
     scene::{
         Scene,
@@ -54,6 +54,20 @@ impl Canvas for Pyramid {
             Numbers::Sobol => By::<_, Sobol>(share, PhantomData).run(Full {}),
             Numbers::Independent => By::<_, Apart>(share, PhantomData).run(Full {}),
         }
+    }
+}
+
+impl Canvas for Both<'_> {
+    /// As with a pyramid alone.
+    fn share(share: Share<'_, Self>) -> Worked {
+        match share.job.numbers {
+            Numbers::Sobol => By::<_, Sobol>(share, PhantomData).run(Full {}),
+            Numbers::Independent => By::<_, Apart>(share, PhantomData).run(Full {}),
+        }
+    }
+
+    fn error(&self) -> Option<f64> {
+        self.film.error()
     }
 }
 

@@ -1,5 +1,6 @@
 //! A scene as it was written down: plain data, in f64 and in the file's own coordinates, before anything is built from it.
 
+mod aov;
 mod material;
 
 use std::sync::Arc;
@@ -7,6 +8,7 @@ use std::sync::Arc;
 use bidir_kernel::Spectrum;
 use glam::{DAffine3, DVec2, DVec3};
 
+pub use self::aov::{Aov, Quantity, Words};
 pub use self::material::{
     Bending, Bitmap, Distribution, Material, MaterialId, NormalMap, PluginShader, Principled, Texture, TexturedParameter, UvTransform, Wrap,
 };
@@ -64,11 +66,13 @@ pub struct Integrator {
     pub rr_depth: u32,
     /// Whether the lens sees through emitters.
     pub hide_emitters: bool,
+    /// Layers that are asked for beside the picture.
+    pub aovs: Vec<Aov>,
 }
 
 impl Default for Integrator {
     fn default() -> Self {
-        Self { kind: "path".into(), max_depth: None, rr_depth: 5, hide_emitters: false }
+        Self { kind: "path".into(), max_depth: None, rr_depth: 5, hide_emitters: false, aovs: Vec::new() }
     }
 }
 

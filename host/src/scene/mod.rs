@@ -54,6 +54,19 @@ pub struct Scene {
     plain: Option<plain::Parts>,
 }
 
+/// What a ray meets.
+#[derive(Clone, Copy, Debug)]
+pub struct Met {
+    /// Where.
+    pub point: Point,
+    /// The number of its shape: those that stand in no group, then each group's.
+    pub shape: u32,
+    /// The number of the triangle in a mesh.
+    pub triangle: u32,
+    /// The number of its material.
+    pub material: u32,
+}
+
 impl Scene {
     /// The same scene with triangles met in another way.
     pub fn with_triangles(self, triangles: Triangles) -> Self {
@@ -115,6 +128,21 @@ impl Scene {
             Some(triangle) => (self.shapes[owner.of as usize].point(&self.geometry.surface(ray, hit), triangle), owner.of),
             None => self.met_in_instance(ray, hit, owner),
         }
+    }
+
+    /// What a ray meets first, with surface coordinates whether a material asks for them or not.
+    pub fn first_met(&self, ray: &Ray) -> Option<Met> {
+        let hit = self.geometry.closest(ray)?;
+        let (owner, at) = (self.owners[hit.primitive.0 as usize], self.geometry.surface(ray, &hit));
+        let (shape, triangle, point) = match owner.triangle() {
+            Some(triangle) => (owner.of, triangle, self.shapes[owner.of as usize].point_in_full(&at, triangle, None)),
+            None => {
+                let (shape, triangle) = self.owner_in_instance(&hit, owner);
+                let to_world = self.geometry.to_world(&hit).matrix3;
+                (shape, triangle, self.shapes[shape as usize].point_in_full(&at, triangle, Some(&to_world)))
+            }
+        };
+        Some(Met { point, shape, triangle, material: self.shapes[shape as usize].finish })
     }
 
     /// The same with the shape itself.

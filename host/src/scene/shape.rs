@@ -122,6 +122,11 @@ impl Shape {
         self.turned(at, triangle, Some(&Turn::of_instance(to_world)))
     }
 
+    /// The same with coordinates and a tangent, whether anything asks for them or not.
+    pub(super) fn point_in_full(&self, at: &SurfacePoint, triangle: u32, to_world: Option<&DMat3>) -> Point {
+        in_parts(&self.told_apart(at, triangle, to_world.map(Turn::of_instance).as_ref()))
+    }
+
     #[inline(always)]
     fn turned(&self, at: &SurfacePoint, triangle: u32, turn: Option<&Turn>) -> Point {
         if self.mapped || matches!(self.form, Form::Mesh(_)) {

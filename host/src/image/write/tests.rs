@@ -26,7 +26,7 @@ fn an_exr_holds_every_layer_to_the_bit() -> Tested {
     let path = folder.path().join("a.exr");
     let (main, albedo) = (picture(37, 21, 0.0), picture(37, 21, 5.5));
     let notes = vec![("spp".into(), "16".into()), ("seed".into(), "3".into())];
-    write(&path, &Layers { image: &main, named: vec![("albedo".into(), &albedo)], notes })?;
+    write(&path, &Layers { image: &main, named: vec![Layer::rgb("albedo", &albedo)], notes })?;
 
     let read = read().no_deep_data().largest_resolution_level().all_channels().first_valid_layer().all_attributes().from_file(&path)?;
     let channels = &read.layer_data.channel_data.list;
@@ -103,10 +103,10 @@ fn a_bad_path_is_refused_and_nothing_is_left_behind() -> Tested {
     }
     let other = picture(5, 4, 0.0);
     for (name, layer) in [("b.png", &image), ("b.exr", &other)] {
-        assert!(write(&folder.path().join(name), &Layers { named: vec![("x".into(), layer)], ..Layers::from(&image) }).is_err());
+        assert!(write(&folder.path().join(name), &Layers { named: vec![Layer::rgb("x", layer)], ..Layers::from(&image) }).is_err());
     }
     // Fails in the middle of writing.
-    assert!(write(&folder.path().join("b.exr"), &Layers { named: vec![("λ".into(), &image)], ..Layers::from(&image) }).is_err());
+    assert!(write(&folder.path().join("b.exr"), &Layers { named: vec![Layer::rgb("λ", &image)], ..Layers::from(&image) }).is_err());
     check_writable(&folder.path().join("fine.png"))?;
     assert_eq!(files(folder.path()), ["file", "folder.exr"]);
     Ok(())
@@ -118,7 +118,7 @@ fn a_failed_write_leaves_the_older_picture() -> Tested {
     let (path, image) = (folder.path().join("a.exr"), picture(4, 4, 0.0));
     write(&path, &Layers::from(&image))?;
     let before = fs::read(&path)?;
-    assert!(write(&path, &Layers { named: vec![("λ".into(), &image)], ..Layers::from(&image) }).is_err());
+    assert!(write(&path, &Layers { named: vec![Layer::rgb("λ", &image)], ..Layers::from(&image) }).is_err());
     assert_eq!(fs::read(&path)?, before);
     write(&path, &Layers::from(&picture(9, 9, 1.0)))?;
     assert_ne!(fs::read(&path)?, before);
