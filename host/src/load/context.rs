@@ -1,7 +1,7 @@
 //! What reading a scene builds up, and what is shared between its elements.
 
 use std::{
-    collections::HashMap,
+    collections::{HashMap, HashSet},
     path::{Path, PathBuf},
     sync::Arc,
 };
@@ -28,6 +28,10 @@ pub(super) struct Context<'s> {
     pub(super) groups_read: HashMap<u32, Option<Known>>,
     /// How many groups are being read, each inside the one before.
     pub(super) groups_open: usize,
+    /// Merges that were read, by the serial of the element.
+    pub(super) merged: HashSet<u32>,
+    /// How many merges are being read, each inside the one before.
+    pub(super) merges_open: usize,
     pub(super) default_materials: [Option<MaterialId>; 2],
     /// By the file and everything that changes what is read from it.
     pub(super) bitmaps: HashMap<String, Arc<Bitmap>>,
@@ -51,6 +55,8 @@ impl<'s> Context<'s> {
             groups: Vec::new(),
             groups_read: HashMap::new(),
             groups_open: 0,
+            merged: HashSet::new(),
+            merges_open: 0,
             default_materials: [None; 2],
             bitmaps: HashMap::new(),
             environments: HashMap::new(),

@@ -12,6 +12,7 @@ mod group;
 mod ids;
 mod integrator;
 mod ior;
+mod merge;
 pub mod mesh;
 mod plugin;
 mod properties;
@@ -20,6 +21,7 @@ mod shape;
 pub(crate) mod suggest;
 mod texture;
 mod transform;
+mod upgrade;
 mod value;
 mod xml;
 
@@ -60,6 +62,7 @@ pub fn load_str(text: &str, name: &Path, base_dir: Option<&Path>, defines: &[(St
     let ids = Ids::collect(&tree.root)?;
     let scene = Properties::read(&tree.root, &ids)?;
     let mut context = Context::new(ids, library, base_dir, &tree.search);
+    context.warnings.extend(tree.notes.iter().cloned());
 
     let integrator = match scene.object("integrator")? {
         Some(element) => integrator::integrator(&mut context, element)?,
@@ -84,6 +87,9 @@ pub fn load_str(text: &str, name: &Path, base_dir: Option<&Path>, defines: &[(St
     let emitters = emitters(&mut context, &scene)?;
     for tag in ["medium", "volume", "phase", "film", "sampler", "rfilter"] {
         if let Some(element) = scene.objects(tag).first() {
+            if tag == "medium" {
+                catalog::check(tag, element.attribute("type").unwrap_or(""), &element.place)?;
+            }
             let remedy =
                 if tag == "medium" { "media are not supported; take it out" } else { "move it to where it belongs, or take it out" };
             return Err(Error::at(&element.place, format!("a <{tag}> stands directly inside the scene"), remedy));

@@ -34,7 +34,7 @@ pub fn ply(data: &[u8]) {
 
 /// A mesh is refused with a remedy, or has finite vertices and corners that are there, is no larger than its file, and can be lit and hit.
 fn mesh(data: &[u8], format: Format) {
-    let Parsed { mesh, dropped } = match parse(data, format, Path::new("fuzz.mesh")) {
+    let Parsed { mesh, dropped, .. } = match parse(data, format, Path::new("fuzz.mesh")) {
         Ok(parsed) => parsed,
         Err(error) => return told(&error),
     };

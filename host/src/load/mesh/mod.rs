@@ -4,6 +4,7 @@ mod cube;
 mod normals;
 mod obj;
 mod ply;
+mod serialized;
 
 use std::{path::Path, sync::Arc};
 
@@ -23,6 +24,11 @@ pub enum Format {
     Obj,
     /// Stanford PLY, ascii or binary.
     Ply,
+    /// Mitsuba's own, which may hold several meshes.
+    Serialized {
+        /// Which, from 0.
+        index: u32,
+    },
 }
 
 /// A mesh out of a file.
@@ -32,6 +38,8 @@ pub struct Parsed {
     pub mesh: Mesh,
     /// How many triangles were left out: without area, or with a corner that is no point.
     pub dropped: usize,
+    /// Whether the file itself says that its triangles are flat.
+    pub flat: bool,
 }
 
 /// Reads a mesh that is in memory already; messages call it `name`.
@@ -39,12 +47,13 @@ pub struct Parsed {
 /// # Errors
 /// If it is not in that format, or is no mesh of finite numbers with an area.
 pub fn parse(bytes: &[u8], format: Format, name: &Path) -> Result<Parsed> {
-    let mut mesh = match format {
-        Format::Obj => obj::read(bytes, name)?,
-        Format::Ply => ply::read(bytes, name)?,
+    let (mut mesh, facets) = match format {
+        Format::Obj => (obj::read(bytes, name)?, Facets::Smooth),
+        Format::Ply => (ply::read(bytes, name)?, Facets::Smooth),
+        Format::Serialized { index } => serialized::read(bytes, index, name)?,
     };
     let dropped = check(&mut mesh, name)?;
-    Ok(Parsed { mesh, dropped })
+    Ok(Parsed { mesh, dropped, flat: facets == Facets::Flat })
 }
 
 /// Whether a mesh's v runs the other way than its file says.
@@ -61,15 +70,22 @@ enum Facets {
     Smooth,
 }
 
-/// The mesh of a shape of type `cube`, `obj` or `ply`.
+/// The mesh of a shape of type `cube`, `obj`, `ply` or `serialized`.
 pub(super) fn mesh(context: &mut Context, of: &Properties) -> Result<Arc<Mesh>> {
     let facets = if of.boolean("face_normals")?.unwrap_or(false) { Facets::Flat } else { Facets::Smooth };
     if of.kind() == "cube" {
         return Ok(Arc::new(finish(cube::mesh(), facets)));
     }
-    let format = if of.kind() == "obj" { Format::Obj } else { Format::Ply };
-    // Mitsuba's defaults: an OBJ's v points up and its images' v points down, so one is turned.
-    let flip = of.boolean("flip_tex_coords")?.unwrap_or(format == Format::Obj);
+    let format = match of.kind() {
+        "obj" => Format::Obj,
+        "serialized" => Format::Serialized { index: of.whole("shape_index", 0)?.unwrap_or(0) as u32 },
+        _ => Format::Ply,
+    };
+    // Mitsuba's defaults: an OBJ's v points up and its images' v points down, so one is turned. Its own format's never is.
+    let flip = match format {
+        Format::Serialized { .. } => false,
+        _ => of.boolean("flip_tex_coords")?.unwrap_or(format == Format::Obj),
+    };
     let flip = if flip { FlipV::Yes } else { FlipV::No };
     let path = context.file(of.required_text("filename")?, of.place_of("filename"))?;
     let key = format!("{format:?} {} {facets:?} {flip:?}", path.display());
@@ -78,7 +94,8 @@ pub(super) fn mesh(context: &mut Context, of: &Properties) -> Result<Arc<Mesh>> 
     }
     let here = |error: Error| named_here(&error, of.place_of("filename"));
     let bytes = bytes(&path).map_err(here)?;
-    let Parsed { mut mesh, dropped } = parse(&bytes, format, &path).map_err(here)?;
+    let Parsed { mut mesh, dropped, flat } = parse(&bytes, format, &path).map_err(here)?;
+    let facets = if flat { Facets::Flat } else { facets };
     if flip == FlipV::Yes {
         mesh.uvs.iter_mut().for_each(|uv| uv[1] = 1.0 - uv[1]);
     }
