@@ -53,7 +53,7 @@ const SUPPORTED: &[(&str, &[&str])] = &[
             "null",
         ],
     ),
-    ("texture", &["bitmap", "checkerboard"]),
+    ("texture", &["bitmap", "checkerboard", "mesh_attribute"]),
     ("shape", &["rectangle", "disk", "sphere", "cube", "cylinder", "obj", "ply", "serialized", "merge", "shapegroup", "instance"]),
     ("emitter", &["area", "point", "spot", "directional", "constant", "envmap"]),
 ];
@@ -97,7 +97,7 @@ const UNSUPPORTED: &[Unsupported] = &[
     ("texture", &["scale"], "multiply what is inside by it"),
     ("texture", &["vertexcolors"], "use mesh_attribute with the name vertex_color"),
     ("texture", &["wireframe", "curvature"], "use bitmap"),
-    ("texture", &["mesh_attribute", "volume", "area_attribute"], "use bitmap"),
+    ("texture", &["volume", "area_attribute"], "use bitmap"),
     ("shape", &["blender"], "save it as ply or obj"),
     ("shape", &["bsplinecurve", "linearcurve", "sdfgrid", "ellipsoids", "ellipsoidsmesh"], "save it as a mesh in ply or obj"),
     ("shape", &["heightfield", "hair"], "save it as a mesh in ply or obj"),

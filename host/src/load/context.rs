@@ -6,7 +6,7 @@ use std::{
     sync::Arc,
 };
 
-use super::{group::Known, ids::Ids, properties::line, xml, xml::Element};
+use super::{attribute::Wearer, group::Known, ids::Ids, properties::line, xml, xml::Element};
 use crate::{
     error::{Error, Place, Result},
     plugin::Library,
@@ -19,10 +19,14 @@ pub(super) struct Context<'s> {
     pub(super) library: &'s Library,
     pub(super) warnings: Vec<String>,
     pub(super) materials: Vec<Material>,
-    /// By the serial of the element; `None` while the material is being read.
-    pub(super) material_ids: HashMap<u32, Option<MaterialId>>,
-    /// How many materials are being read, each inside the one before.
-    pub(super) materials_open: usize,
+    /// By the serial of the element, and [`Wearer::key`] where attributes of a mesh are asked for.
+    pub(super) material_ids: HashMap<(u32, Option<usize>), MaterialId>,
+    /// The serials of the elements whose materials are being read, each inside the one before.
+    pub(super) materials_open: Vec<u32>,
+    /// What wears the material that is being read.
+    pub(super) wearer: Wearer,
+    /// Whether what is being read asks for attributes of the mesh that wears it.
+    pub(super) attributes_asked: bool,
     pub(super) groups: Vec<Arc<Group>>,
     /// By the serial of the element; `None` while the group is being read.
     pub(super) groups_read: HashMap<u32, Option<Known>>,
@@ -51,7 +55,9 @@ impl<'s> Context<'s> {
             warnings: Vec::new(),
             materials: Vec::new(),
             material_ids: HashMap::new(),
-            materials_open: 0,
+            materials_open: Vec::new(),
+            wearer: Wearer::Nobody,
+            attributes_asked: false,
             groups: Vec::new(),
             groups_read: HashMap::new(),
             groups_open: 0,

@@ -2,6 +2,7 @@
 //!
 //! What is written is either read as Mitsuba 3 reads it, or an error says where it stands, what it is and what to do instead.
 
+mod attribute;
 mod bsdf;
 pub mod catalog;
 mod context;
@@ -27,7 +28,7 @@ mod xml;
 
 use std::path::Path;
 
-use self::{context::Context, ids::Ids, properties::Properties};
+use self::{attribute::Wearer, context::Context, ids::Ids, properties::Properties};
 use crate::{
     error::{Error, Result},
     plugin::Library,
@@ -76,12 +77,14 @@ pub fn load_str(text: &str, name: &Path, base_dir: Option<&Path>, defines: &[(St
     if let Some(second) = sensors.get(1) {
         context.warn(&second.place, format_args!("the scene has {} sensors; the first one is used", sensors.len()));
     }
+    context.wearer = Wearer::Declared;
     for element in scene.objects("bsdf") {
         bsdf::material(&mut context, element)?;
     }
     for element in scene.objects("texture") {
         texture::texture(&mut context, element, texture::Range::NOT_NEGATIVE, &element.place)?;
     }
+    context.wearer = Wearer::Nobody;
     let (shapes, instances) = group::shapes(&mut context, &scene.objects("shape"), group::Whole::Scene)?;
     warn_of_unused_groups(&mut context, &instances);
     let emitters = emitters(&mut context, &scene)?;

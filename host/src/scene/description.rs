@@ -1,6 +1,7 @@
 //! A scene as it was written down: plain data, in f64 and in the file's own coordinates, before anything is built from it.
 
 mod material;
+mod mesh;
 
 use std::sync::Arc;
 
@@ -10,6 +11,7 @@ use glam::{DAffine3, DVec2, DVec3};
 pub use self::material::{
     Bending, Bitmap, Distribution, Material, MaterialId, NormalMap, PluginShader, Principled, Texture, TexturedParameter, UvTransform, Wrap,
 };
+pub use self::mesh::{Attribute, Mesh, Per};
 use crate::error::Place;
 
 /// Everything a scene file says.
@@ -267,19 +269,6 @@ pub enum Geometry {
         /// Whether its normals point inwards.
         flip_normals: bool,
     },
-}
-
-/// Triangles with shared vertices.
-#[derive(Clone, Debug, Default)]
-pub struct Mesh {
-    /// Vertex positions, finite.
-    pub positions: Vec<[f32; 3]>,
-    /// One per vertex, or none: then the triangles are flat. Any length; zero falls back to the triangle's own.
-    pub normals: Vec<[f32; 3]>,
-    /// One per vertex, or none.
-    pub uvs: Vec<[f32; 2]>,
-    /// Corners, counter-clockwise seen from outside.
-    pub triangles: Vec<[u32; 3]>,
 }
 
 /// Lights that are not on a shape.

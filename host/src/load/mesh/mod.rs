@@ -11,7 +11,7 @@ use std::{path::Path, sync::Arc};
 use super::{context::Context, properties::Properties, texture::named_here};
 use crate::{
     error::{Error, Result},
-    scene::description::Mesh,
+    scene::description::{Mesh, Per},
 };
 
 /// The largest mesh file, in bytes.
@@ -134,7 +134,13 @@ fn check(mesh: &mut Mesh, path: &Path) -> Result<usize> {
     let positions = &mesh.positions;
     // The bound keeps squares of differences within f64 and differences within f32.
     let is_point = |v: u32| positions[v as usize].iter().all(|x| x.abs() <= 1e30);
-    mesh.triangles.retain(|&corners| corners.into_iter().all(is_point) && normals::doubled_area(positions, corners) > 0.0);
+    let keep: Vec<bool> = (mesh.triangles.iter())
+        .map(|&corners| corners.into_iter().all(is_point) && normals::doubled_area(positions, corners) > 0.0)
+        .collect();
+    retain(&mut mesh.triangles, &keep);
+    for attribute in mesh.attributes.iter_mut().filter(|attribute| attribute.per == Per::Triangle) {
+        retain(&mut attribute.values, &keep);
+    }
     let Some(&[first, ..]) = mesh.triangles.first() else {
         let no_point = mesh.positions.iter().position(|position| !position.iter().all(|x| x.abs() <= 1e30));
         let but = no_point.map_or(String::new(), |at| format!("; vertex {at} (counted from 0) is no point"));
@@ -154,7 +160,16 @@ fn check(mesh: &mut Mesh, path: &Path) -> Result<usize> {
     fill_unused(&mut mesh.positions, &used, first);
     fill_unused(&mut mesh.normals, &used, first);
     fill_unused(&mut mesh.uvs, &used, first);
+    for attribute in mesh.attributes.iter_mut().filter(|attribute| attribute.per == Per::Vertex) {
+        fill_unused(&mut attribute.values, &used, first);
+    }
     Ok(before - mesh.triangles.len())
+}
+
+/// Leaves out what is not to be kept.
+fn retain<T>(values: &mut Vec<T>, keep: &[bool]) {
+    let mut keep = keep.iter();
+    values.retain(|_| keep.next() == Some(&true));
 }
 
 /// Gives what no triangle names the value of a vertex that one does.

@@ -12,7 +12,7 @@ use flate2::read::ZlibDecoder;
 use super::Facets;
 use crate::{
     error::{Error, Result},
-    scene::description::Mesh,
+    scene::description::{Attribute, Mesh, Per},
 };
 
 const FORMAT: u16 = 0x041c;
@@ -106,7 +106,8 @@ fn mesh(bytes: &[u8]) -> Told<(Mesh, Facets)> {
         mesh.uvs = source.rows(vertices, real)?;
     }
     if flags & COLOURS != 0 {
-        source.rows::<3>(vertices, real)?;
+        let values = source.rows(vertices, real)?;
+        mesh.attributes.push(Attribute { name: "vertex_color".into(), per: Per::Vertex, values });
     }
     for _ in 0..triangles {
         let corner = |source: &mut Source| source.bytes().map(u32::from_le_bytes);
@@ -219,6 +220,7 @@ mod tests {
                 for (index, width) in [(0, 1.0), (1, 2.0)] {
                     let (mesh, facets) = read(&bytes, index, Path::new("m.serialized")).unwrap();
                     assert_eq!((mesh.positions[1], mesh.uvs[0], facets), ([width, 0.0, 0.0], [0.0, 0.25], Facets::Smooth));
+                    assert_eq!((&mesh.attributes[0].name[..], mesh.attributes[0].values[3]), ("vertex_color", [0.5; 3]));
                     assert_eq!((mesh.normals, mesh.triangles), (vec![[0.0, 0.0, 1.0]; 4], vec![[0, 1, 2], [0, 2, 3]]));
                 }
             }
