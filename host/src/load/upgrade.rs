@@ -157,11 +157,11 @@ impl Upgrade {
         element.children.retain_mut(|child| {
             let value = child.attribute("value").unwrap_or("").trim().to_owned();
             match child.attribute("name") {
-                Some("gamma") if value.parse() == Ok(-1.0) => {
+                Some("gamma") if value.parse::<f64>() == Ok(-1.0) => {
                     note(&mut self.left_out, "gamma", "", &child.place);
                     return false;
                 }
-                Some("gamma") if value.parse() == Ok(1.0) => {
+                Some("gamma") if value.parse::<f64>() == Ok(1.0) => {
                     note(&mut self.renamed, "gamma 1", "raw", &child.place);
                     child.tag = "boolean".into();
                     child.attributes = [("name", "raw"), ("value", "true")].map(|(name, value)| (name.to_owned(), value.to_owned())).into();
