@@ -26,8 +26,8 @@ const COLOURS: u32 = 0x8;
 const FLAT: u32 = 0x10;
 const DOUBLE: u32 = 0x2000;
 
-/// No byte that is compressed holds more: 258 bytes for two bits.
-const MOST_OUT_OF_A_BYTE: u64 = 1032;
+/// What a compressed byte of a mesh may unpack to: DEFLATE could do four times as much, but no mesh does.
+const MOST_OUT_OF_A_BYTE: u64 = 256;
 /// As of other meshes' files.
 const MOST_UNPACKED: u64 = super::MAX_BYTES;
 /// Of a mesh's name.
@@ -87,7 +87,8 @@ fn header(bytes: &[u8]) -> Told<u16> {
 fn mesh(bytes: &[u8]) -> Told<(Mesh, Facets)> {
     let version = header(bytes)?;
     let packed = &bytes[4..];
-    let mut source = Source(BufReader::new(ZlibDecoder::new(packed).take(MOST_UNPACKED)));
+    let most = (packed.len() as u64).saturating_mul(MOST_OUT_OF_A_BYTE).saturating_add(LONGEST_NAME as u64).min(MOST_UNPACKED);
+    let mut source = Source(BufReader::new(ZlibDecoder::new(packed).take(most)));
     let flags = u32::from_le_bytes(source.bytes()?);
     if version == FOURTH {
         source.name()?;
@@ -95,7 +96,7 @@ fn mesh(bytes: &[u8]) -> Told<(Mesh, Facets)> {
     let [vertices, triangles] = [source.bytes()?, source.bytes()?].map(u64::from_le_bytes);
     let real: u64 = if flags & DOUBLE == 0 { 4 } else { 8 };
     let least = vertices.saturating_mul(3 * real).saturating_add(triangles.saturating_mul(12));
-    if least > (packed.len() as u64).saturating_mul(MOST_OUT_OF_A_BYTE) || vertices > u64::from(u32::MAX) {
+    if least > most || vertices > u64::from(u32::MAX) {
         return Err(format!("it announces {vertices} vertices and {triangles} triangles in {} bytes", bytes.len()));
     }
     let mut mesh = Mesh { positions: source.rows(vertices, real)?, ..Mesh::default() };
