@@ -53,12 +53,12 @@ impl Upgrade {
     /// What to tell the user, if anything was changed.
     pub(super) fn note(&self) -> Option<String> {
         let at = |change: &Change| format!("{} (line {})", change.old, change.line);
-        let renamed = self.renamed.iter().enumerate().map(|(i, change)| {
+        let renamed = in_order(&self.renamed).into_iter().enumerate().map(|(i, change)| {
             let is_read = if i == 0 { "is read " } else { "" };
             format!("{} {is_read}as {}", at(change), change.new)
         });
         let renamed = renamed.collect::<Vec<_>>().join(", ");
-        let left_out = self.left_out.iter().map(at).collect::<Vec<_>>().join(", ");
+        let left_out = in_order(&self.left_out).into_iter().map(at).collect::<Vec<_>>().join(", ");
         let left_out = if left_out.is_empty() { left_out } else { format!("without effect: {left_out}") };
         let both = [renamed, left_out].into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join("; ");
         (!both.is_empty()).then(|| format!("{}: written for Mitsuba {}: {both}", self.place.file.display(), self.version))
@@ -179,6 +179,13 @@ impl Upgrade {
     fn renamed(&mut self, old: &str, new: &str, place: &Place) {
         note(&mut self.renamed, old, new, place);
     }
+}
+
+/// As they stand in the file: what is inside an element is changed before what it stands in.
+fn in_order(changes: &[Change]) -> Vec<&Change> {
+    let mut changes: Vec<_> = changes.iter().collect();
+    changes.sort_by_key(|change| change.line);
+    changes
 }
 
 /// Keeps a change, unless it was made before.
