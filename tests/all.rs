@@ -15,6 +15,7 @@ mod hostile;
 mod house;
 mod instances;
 mod invariance;
+mod loading;
 mod peer;
 mod plans;
 mod presets;

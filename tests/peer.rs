@@ -138,6 +138,7 @@ rows! {
     rfilter_lanczos
     rfilter_mitchell
     rfilter_tent
+    scene_0_6
     sensor_orthographic
     sensor_perspective
     sensor_thinlens
@@ -145,12 +146,15 @@ rows! {
     shape_cylinder
     shape_disk
     shape_instance
+    shape_merge
     shape_obj
     shape_ply
     shape_rectangle
+    shape_serialized
     shape_sphere
     texture_bitmap
     texture_checkerboard
+    texture_mesh_attribute
 }
 
 #[test]

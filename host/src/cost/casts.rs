@@ -18,7 +18,7 @@ use crate::{
     scene::{
         camera::SceneCamera,
         lights::{LightId, SceneLight},
-        surface::{Stretch, Surface},
+        surface::{Detail, Surface},
         view::{Hit, RayCounts, View},
     },
 };
@@ -105,7 +105,7 @@ fn keep(rays: &RefCell<Vec<Ray>>, ray: Ray) {
 }
 
 impl<'v> bidir_kernel::Scene for Watched<'v> {
-    type Hit = Hit<'v, Stretch>;
+    type Hit = Hit<'v, Detail>;
     type LightId = LightId;
     type Camera = SceneCamera;
     type Bsdf<'a>

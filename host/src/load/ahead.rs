@@ -94,7 +94,10 @@ fn file(element: &Element, context: &Context) -> Option<File> {
     let value = |name| element.children.iter().find(|child| child.attribute("name") == Some(name))?.attribute("value");
     let path = || context.file(value("filename")?, &element.place).ok();
     match (element.tag.as_str(), element.attribute("type")?) {
-        ("shape", kind) => Some(File::Mesh(path()?, Format::of(kind)?)),
+        ("shape", kind) => {
+            let index = value("shape_index").and_then(|index| index.parse().ok()).unwrap_or(0);
+            Some(File::Mesh(path()?, Format::of(kind, index)?))
+        }
         ("texture", "bitmap") => {
             let encoding = if value("raw") == Some("true") { Encoding::Linear } else { Encoding::Srgb };
             Some(File::Image(path()?, encoding))

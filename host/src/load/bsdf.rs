@@ -30,21 +30,26 @@ pub(super) fn default(context: &mut Context, shines: bool) -> MaterialId {
     id
 }
 
-/// The material that an element describes; once for each element, however often it is referred to.
+/// The material that an element describes; once for each element, however often it is referred to, and once for each mesh that wears it
+/// if it asks for attributes.
 pub(super) fn material(context: &mut Context, element: &Element) -> Result<MaterialId> {
-    match context.material_ids.get(&element.serial) {
-        Some(Some(known)) => return Ok(*known),
-        Some(None) => {
-            let thing = format!("the bsdf on line {} refers to itself", line(&element.place));
-            return Err(Error::at(&element.place, thing, "take one of the references out"));
-        }
-        None => {}
+    let of_wearer = (element.serial, Some(context.wearer.key()));
+    if let Some(known) = context.material_ids.get(&(element.serial, None)) {
+        return Ok(*known);
     }
-    if context.materials_open >= MAX_DEPTH {
+    if let Some(known) = context.material_ids.get(&of_wearer) {
+        context.attributes_asked = true;
+        return Ok(*known);
+    }
+    if context.materials_open.contains(&element.serial) {
+        let thing = format!("the bsdf on line {} refers to itself", line(&element.place));
+        return Err(Error::at(&element.place, thing, "take one of the references out"));
+    }
+    if context.materials_open.len() >= MAX_DEPTH {
         return Err(Error::at(&element.place, format!("materials nest more than {MAX_DEPTH} deep"), "flatten them"));
     }
-    context.material_ids.insert(element.serial, None);
-    context.materials_open += 1;
+    context.materials_open.push(element.serial);
+    let outer = std::mem::take(&mut context.attributes_asked);
     let properties = Properties::read(element, &context.ids)?;
     let material = match plugin::find(context, "bsdf", &properties, &element.place)? {
         Some(module) => Material::Plugin(plugin::shader(context, &properties, module)?),
@@ -55,8 +60,9 @@ pub(super) fn material(context: &mut Context, element: &Element) -> Result<Mater
     };
     properties.finish()?;
     let id = add(context, material);
-    context.materials_open -= 1;
-    context.material_ids.insert(element.serial, Some(id));
+    context.materials_open.pop();
+    context.material_ids.insert(if context.attributes_asked { of_wearer } else { (element.serial, None) }, id);
+    context.attributes_asked |= outer;
     Ok(id)
 }
 

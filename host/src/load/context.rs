@@ -1,12 +1,12 @@
 //! What reading a scene builds up, and what is shared between its elements.
 
 use std::{
-    collections::HashMap,
+    collections::{HashMap, HashSet},
     path::{Path, PathBuf},
     sync::Arc,
 };
 
-use super::{ahead::Ahead, group::Known, ids::Ids, properties::line, xml, xml::Element};
+use super::{ahead::Ahead, attribute::Wearer, group::Known, ids::Ids, properties::line, xml, xml::Element};
 use crate::{
     error::{Error, Place, Result},
     plugin::Library,
@@ -19,15 +19,23 @@ pub(super) struct Context<'s> {
     pub(super) library: &'s Library,
     pub(super) warnings: Vec<String>,
     pub(super) materials: Vec<Material>,
-    /// By the serial of the element; `None` while the material is being read.
-    pub(super) material_ids: HashMap<u32, Option<MaterialId>>,
-    /// How many materials are being read, each inside the one before.
-    pub(super) materials_open: usize,
+    /// By the serial of the element, and [`Wearer::key`] where attributes of a mesh are asked for.
+    pub(super) material_ids: HashMap<(u32, Option<usize>), MaterialId>,
+    /// The serials of the elements whose materials are being read, each inside the one before.
+    pub(super) materials_open: Vec<u32>,
+    /// What wears the material that is being read.
+    pub(super) wearer: Wearer,
+    /// Whether what is being read asks for attributes of the mesh that wears it.
+    pub(super) attributes_asked: bool,
     pub(super) groups: Vec<Arc<Group>>,
     /// By the serial of the element; `None` while the group is being read.
     pub(super) groups_read: HashMap<u32, Option<Known>>,
     /// How many groups are being read, each inside the one before.
     pub(super) groups_open: usize,
+    /// Merges that were read, by the serial of the element.
+    pub(super) merged: HashSet<u32>,
+    /// How many merges are being read, each inside the one before.
+    pub(super) merges_open: usize,
     pub(super) default_materials: [Option<MaterialId>; 2],
     /// By the file and everything that changes what is read from it.
     pub(super) bitmaps: HashMap<String, Arc<Bitmap>>,
@@ -49,10 +57,14 @@ impl<'s> Context<'s> {
             warnings: Vec::new(),
             materials: Vec::new(),
             material_ids: HashMap::new(),
-            materials_open: 0,
+            materials_open: Vec::new(),
+            wearer: Wearer::Nobody,
+            attributes_asked: false,
             groups: Vec::new(),
             groups_read: HashMap::new(),
             groups_open: 0,
+            merged: HashSet::new(),
+            merges_open: 0,
             default_materials: [None; 2],
             bitmaps: HashMap::new(),
             environments: HashMap::new(),

@@ -1,9 +1,10 @@
-//! `<shape type="shapegroup">` and `<shape type="instance">`: geometry that is kept once and stands in many places.
+//! What shapes belong to; `<shape type="shapegroup">` and `<shape type="instance">`: geometry that is kept once and stands in many places.
 
 use std::sync::Arc;
 
 use super::{
     context::Context,
+    merge,
     properties::{Properties, line},
     shape, transform,
     xml::Element,
@@ -30,12 +31,30 @@ pub(super) enum Whole<'a> {
     Group(&'a mut Known),
 }
 
+impl Whole<'_> {
+    /// The same, for what stands deeper in it.
+    fn same(&mut self) -> Whole<'_> {
+        match self {
+            Self::Scene => Whole::Scene,
+            Self::Group(known) => Whole::Group(known),
+        }
+    }
+}
+
 /// Reads shapes and instances; groups that stand among them are for instances to refer to.
 pub(super) fn shapes(context: &mut Context, elements: &[&Element], mut whole: Whole) -> Result<(Vec<Shape>, Vec<Instance>)> {
     let (mut shapes, mut instances) = (Vec::new(), Vec::new());
     for element in elements {
         match (element.attribute("type"), &mut whole) {
             (Some("instance"), whole) => instances.push(instance(context, element, whole)?),
+            (Some("merge"), whole) => {
+                let inside = merge::shapes(context, element)?;
+                context.merges_open += 1;
+                let (more, placed) = self::shapes(context, &inside, whole.same())?;
+                context.merges_open -= 1;
+                shapes.extend(more);
+                instances.extend(placed);
+            }
             (Some("shapegroup"), Whole::Scene) => _ = group(context, element)?,
             (Some("shapegroup"), Whole::Group(_)) => {
                 let remedy = "put its shapes here, or an instance of it";

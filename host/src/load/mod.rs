@@ -3,6 +3,7 @@
 //! What is written is either read as Mitsuba 3 reads it, or an error says where it stands, what it is and what to do instead.
 
 mod ahead;
+mod attribute;
 mod bsdf;
 pub mod catalog;
 mod context;
@@ -13,6 +14,7 @@ mod group;
 mod ids;
 mod integrator;
 mod ior;
+mod merge;
 pub mod mesh;
 mod plugin;
 mod properties;
@@ -21,13 +23,14 @@ mod shape;
 pub(crate) mod suggest;
 mod texture;
 mod transform;
+mod upgrade;
 mod value;
 mod xml;
 
 use std::path::Path;
 
 pub use self::ahead::Watch;
-use self::{ahead::Ahead, context::Context, ids::Ids, properties::Properties};
+use self::{ahead::Ahead, attribute::Wearer, context::Context, ids::Ids, properties::Properties};
 use crate::{
     error::{Error, Result},
     plugin::Library,
@@ -81,6 +84,7 @@ fn read(
     let ids = Ids::collect(&tree.root)?;
     let scene = Properties::read(&tree.root, &ids)?;
     let mut context = Context::new(ids, library, base_dir, &tree.search);
+    context.warnings.extend(tree.notes.iter().cloned());
     context.ahead = Ahead::read(&tree.root, &context, watch);
 
     let integrator = match scene.object("integrator")? {
@@ -95,17 +99,22 @@ fn read(
     if let Some(second) = sensors.get(1) {
         context.warn(&second.place, format_args!("the scene has {} sensors; the first one is used", sensors.len()));
     }
+    context.wearer = Wearer::Declared;
     for element in scene.objects("bsdf") {
         bsdf::material(&mut context, element)?;
     }
     for element in scene.objects("texture") {
         texture::texture(&mut context, element, texture::Range::NOT_NEGATIVE, &element.place)?;
     }
+    context.wearer = Wearer::Nobody;
     let (shapes, instances) = group::shapes(&mut context, &scene.objects("shape"), group::Whole::Scene)?;
     warn_of_unused_groups(&mut context, &instances);
     let emitters = emitters(&mut context, &scene)?;
     for tag in ["medium", "volume", "phase", "film", "sampler", "rfilter"] {
         if let Some(element) = scene.objects(tag).first() {
+            if tag == "medium" {
+                catalog::check(tag, element.attribute("type").unwrap_or(""), &element.place)?;
+            }
             let remedy =
                 if tag == "medium" { "media are not supported; take it out" } else { "move it to where it belongs, or take it out" };
             return Err(Error::at(&element.place, format!("a <{tag}> stands directly inside the scene"), remedy));

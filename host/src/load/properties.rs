@@ -35,6 +35,14 @@ pub(super) const OBJECTS: [&str; 14] = [
 ];
 const PLAIN: [&str; 9] = ["float", "integer", "boolean", "string", "rgb", "spectrum", "point", "vector", "transform"];
 
+/// Elements of Mitsuba before 3, and what to write today.
+const FORMERLY: [(&str, &str); 4] = [
+    ("luminaire", "<emitter>"),
+    ("camera", "<sensor>"),
+    ("blackbody", "<rgb> with the colour that it has"),
+    ("srgb", "<rgb> with linear numbers"),
+];
+
 /// What a property holds.
 #[derive(Debug)]
 pub(super) enum Value<'s> {
@@ -348,7 +356,10 @@ fn read_value<'s>(child: &'s Element, ids: &Ids<'s>) -> Result<Value<'s>> {
     }
     if !PLAIN.contains(&tag) {
         let known = [&PLAIN[..], &OBJECTS[1..], &["ref", "default", "include", "alias", "path"]].concat();
-        let remedy = format!("{}there are {}", did_you_mean(tag, &known), list(&known));
+        let remedy = match FORMERLY.iter().find(|(old, _)| *old == tag) {
+            Some((_, now)) => format!("write {now}"),
+            None => format!("{}there are {}", did_you_mean(tag, &known), list(&known)),
+        };
         return Err(Error::at(place, format!("<{tag}> is unknown here"), remedy));
     }
     child.required("name")?;

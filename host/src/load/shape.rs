@@ -2,7 +2,7 @@
 
 use glam::{DAffine3, DMat3, DVec3};
 
-use super::{bsdf, catalog, context::Context, emitter, mesh, properties::Properties, transform, xml::Element};
+use super::{attribute::Wearer, bsdf, catalog, context::Context, emitter, mesh, properties::Properties, transform, xml::Element};
 use crate::{
     error::{Error, Result},
     scene::description::{Geometry, Shape},
@@ -39,7 +39,15 @@ pub(super) fn shape(context: &mut Context, element: &Element, light: Light) -> R
         None => None,
     };
     let material = match bsdf {
-        Some(bsdf) => bsdf::material(context, bsdf)?,
+        Some(bsdf) => {
+            context.wearer = match &geometry {
+                Geometry::Mesh { mesh, .. } => Wearer::Mesh(mesh.clone()),
+                _ => Wearer::Other,
+            };
+            let material = bsdf::material(context, bsdf)?;
+            context.wearer = Wearer::Nobody;
+            material
+        }
         None => bsdf::default(context, light.is_some()),
     };
     of.finish()?;

@@ -175,7 +175,8 @@ fn a_material_made_of_others_has_to_have_them() {
 
 #[test]
 fn every_known_plugin_that_is_not_supported_is_refused() {
-    for entry in catalog::entries().filter(|e| e.instead.is_some() && !["film", "rfilter", "texture", "medium", "sensor"].contains(&e.tag))
+    for entry in catalog::entries()
+        .filter(|e| e.instead.is_some() && !["film", "sampler", "rfilter", "texture", "medium", "sensor"].contains(&e.tag))
     {
         let error = error(&format!("<{} type=\"{}\"/>", entry.tag, entry.name));
         assert!(error.contains("is not supported"), "{error}");

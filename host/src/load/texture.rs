@@ -6,7 +6,7 @@ use bidir_kernel::Spectrum;
 use glam::DAffine3;
 
 use super::{
-    catalog,
+    attribute, catalog,
     context::Context,
     properties::{Properties, Value},
     xml::Element,
@@ -34,11 +34,11 @@ impl Range {
     /// Whatever is a number.
     pub(super) const ANY: Self = Self { min: f32::MIN, max: f32::MAX };
 
-    fn holds(self, color: &Spectrum) -> bool {
+    pub(super) fn holds(self, color: &Spectrum) -> bool {
         color.0.iter().all(|v| (self.min..=self.max).contains(v))
     }
 
-    fn remedy(self) -> String {
+    pub(super) fn remedy(self) -> String {
         match self {
             Self { min, max } if max < f32::MAX => format!("every band must lie within {min} … {max}"),
             Self { min: 0.0, .. } => "every band must be finite and not negative".to_owned(),
@@ -75,6 +75,7 @@ pub(super) fn texture(context: &mut Context, element: &Element, range: Range, us
             };
             Texture::Checkerboard { color0: color("color0", 0.4)?, color1: color("color1", 0.2)?, to_uv: to_uv(&properties)? }
         }
+        "mesh_attribute" => attribute::texture(context, &properties, range, user)?,
         _ => {
             let bitmap = bitmap(context, &properties)?;
             if let Some(at) = bitmap.texels.iter().position(|texel| !range.holds(&texel)) {

@@ -5,7 +5,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use super::{defines::Defines, suggest::list};
+use super::{defines::Defines, suggest::list, upgrade::Upgrade};
 use crate::error::{Error, Place, Result};
 
 /// How deep elements may nest, included files counted in.
@@ -68,11 +68,14 @@ pub(super) struct Tree {
     pub(super) root: Element,
     /// Where `<path>` says to look for files.
     pub(super) search: Vec<PathBuf>,
+    /// What was read as something else, a sentence for each file.
+    pub(super) notes: Vec<String>,
 }
 
 /// Reads `text`, the content of the scene file `name`.
 pub(super) fn read(text: &str, name: &Path, base: Option<&Path>, defines: &[(String, String)]) -> Result<Tree> {
-    let mut reader = Reader { defines: Defines::new(defines), base, including: Vec::new(), search: Vec::new(), count: 0 };
+    let (including, search, notes) = (Vec::new(), Vec::new(), Vec::new());
+    let mut reader = Reader { defines: Defines::new(defines), base, including, search, count: 0, upgrade: None, notes };
     reader.including.extend(name.canonicalize().ok());
     let mut roots = Vec::new();
     reader.file(text, name, 0, &mut roots)?;
@@ -88,7 +91,7 @@ pub(super) fn read(text: &str, name: &Path, base: Option<&Path>, defines: &[(Str
     }
     root.only(&["version"])?;
     reader.defines.check_used(name)?;
-    Ok(Tree { root, search: reader.search })
+    Ok(Tree { root, search: reader.search, notes: reader.notes })
 }
 
 /// The text of a scene file.
@@ -117,6 +120,9 @@ struct Reader<'a> {
     including: Vec<PathBuf>,
     search: Vec<PathBuf>,
     count: u32,
+    /// For the file that is being read, if it is an older one.
+    upgrade: Option<Upgrade>,
+    notes: Vec<String>,
 }
 
 impl Reader<'_> {
@@ -134,8 +140,12 @@ impl Reader<'_> {
         })?;
         let places = Places { name, text, lines: text.match_indices('\n').map(|(at, _)| at + 1).collect(), last: Cell::new((0, 1)) };
         let root = document.root_element();
-        check_version(root, &places.of(root))?;
-        self.node(root, &places, depth, out)
+        let upgrade = upgrade_of(root, &places.of(root))?;
+        let outer = std::mem::replace(&mut self.upgrade, upgrade);
+        self.node(root, &places, depth, out)?;
+        let upgrade = std::mem::replace(&mut self.upgrade, outer);
+        self.notes.extend(upgrade.and_then(|upgrade| upgrade.note()));
+        Ok(())
     }
 
     /// Appends what a node stands for to `out`.
@@ -178,7 +188,12 @@ impl Reader<'_> {
                 self.search.push(folder);
             }
             "include" => self.include(&element, depth, out)?,
-            _ => out.push(element),
+            _ => {
+                if let Some(upgrade) = &mut self.upgrade {
+                    upgrade.element(&mut element)?;
+                }
+                out.push(element);
+            }
         }
         Ok(())
     }
@@ -249,14 +264,16 @@ pub(super) fn no_files(place: &Place) -> Error {
     Error::at(place, "this scene is not in a folder, so it cannot name files", "save it to a file first")
 }
 
-fn check_version(root: roxmltree::Node, place: &Place) -> Result<()> {
-    let remedy = "write <scene version=\"3.0.0\">; bidir reads Mitsuba 3 scenes, and older ones after Mitsuba has converted them";
+/// What a file of that version needs; nothing if it is one of today.
+fn upgrade_of(root: roxmltree::Node, place: &Place) -> Result<Option<Upgrade>> {
+    let remedy = "write <scene version=\"3.0.0\">; bidir reads the scenes of Mitsuba 3, and those of 0.4 to 0.6 as far as Mitsuba 3 does";
     let Some(version) = root.attribute("version") else {
         return Err(Error::at(place, format!("<{}> does not say its version", root.tag_name().name()), remedy));
     };
     let parts: Option<Vec<u32>> = version.split('.').map(|p| p.trim().parse().ok()).collect();
     match parts.as_deref() {
-        Some([2 | 3, _, _]) => Ok(()),
+        Some([2 | 3, _, _]) => Ok(None),
+        Some([0 | 1, _, _]) => Ok(Some(Upgrade::new(place.clone(), version))),
         _ => Err(Error::at(place, format!("version \"{version}\" of the scene language is not supported"), remedy)),
     }
 }
@@ -295,8 +312,8 @@ mod tests {
     }
 
     #[test]
-    fn old_and_unknown_versions_are_refused() {
-        for version in ["0.6.0", "3.0", "4.0.0", "x"] {
+    fn unknown_versions_are_refused() {
+        for version in ["0.6", "3.0", "4.0.0", "x"] {
             assert!(message(&format!("<scene version=\"{version}\"/>")).contains("not supported"));
         }
         assert!(message("<scene/>").contains("does not say its version"));
@@ -313,6 +330,17 @@ mod tests {
         let tree = read_here("<scene version=\"3.0.0\"><include filename=\"a.xml\"/><shape type=\"$t\"/></scene>", folder.path()).unwrap();
         assert_eq!(tree.root.children[0].place, Place { file: folder.path().join("a.xml"), position: Some((2, 33)) });
         assert_eq!(tree.root.children[1].attribute("type"), Some("cube"));
+    }
+
+    #[test]
+    fn each_file_has_its_own_version() {
+        let folder = tempfile::tempdir().unwrap();
+        let shape = "<shape type=\"disk\"><transform name=\"toWorld\"/></shape>";
+        std::fs::write(folder.path().join("old.xml"), format!("<scene version=\"0.5.0\">{shape}</scene>")).unwrap();
+        let tree = read_here(&format!("<scene version=\"3.0.0\"><include filename=\"old.xml\"/>{shape}</scene>"), folder.path()).unwrap();
+        let name = |i: usize| tree.root.children[i].children[0].attribute("name");
+        assert_eq!((name(0), name(1)), (Some("to_world"), Some("toWorld")));
+        assert_eq!(tree.notes.len(), 1);
     }
 
     #[test]

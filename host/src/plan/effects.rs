@@ -216,5 +216,9 @@ fn least(texture: &Texture) -> Real {
         Texture::Constant(value) => value[0],
         Texture::Checkerboard { color0, color1, .. } => color0[0].min(color1[0]),
         Texture::Bitmap(bitmap) => bitmap.texels.iter().map(|texel: Spectrum| texel[0]).fold(Real::INFINITY, Real::min),
+        Texture::Attribute { mesh, index, scale } => {
+            let values = mesh.attributes.get(*index).map_or(&[][..], |attribute| &attribute.values);
+            values.iter().map(|value| value[0] * scale).fold(Real::INFINITY, Real::min)
+        }
     }
 }

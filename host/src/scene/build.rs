@@ -155,7 +155,7 @@ impl Builder<'_> {
             // A profile may depend on coordinates and tangent, and every light's are alike, whether it is a plugin or not.
             let finish = self.finishes.get(shape.finish as usize);
             shape.mapped = shape.light.is_some() || finish.is_some_and(Finish::mapped);
-            shape.bumpy = finish.is_some_and(Finish::bumpy);
+            shape.detailed = finish.is_some_and(Finish::detailed);
         }
         let moved = |group: Group| Group { shapes: group.shapes.start + first..group.shapes.end + first, ..group };
         let degenerate = degenerate + groups.iter().map(|group| group.degenerate).sum::<usize>();

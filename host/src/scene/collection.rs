@@ -125,7 +125,7 @@ impl<'a> Collection<'a> {
                 (Form::Mesh(form), outward, LightExtent::Surface(surface))
             }
         };
-        self.shapes.push(Shape { form, finish: shape.material.0, light: None, facing, mapped: false, bumpy: false });
+        self.shapes.push(Shape { form, finish: shape.material.0, light: None, facing, mapped: false, detailed: false });
         Ok(Some(extent))
     }
 

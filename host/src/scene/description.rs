@@ -2,6 +2,7 @@
 
 mod aov;
 mod material;
+mod mesh;
 
 use std::sync::Arc;
 
@@ -12,6 +13,7 @@ pub use self::aov::{Aov, Quantity, Words};
 pub use self::material::{
     Bending, Bitmap, Distribution, Material, MaterialId, NormalMap, PluginShader, Principled, Texture, TexturedParameter, UvTransform, Wrap,
 };
+pub use self::mesh::{Attribute, Mesh, Per};
 use crate::error::Place;
 
 /// Everything a scene file says.
@@ -271,19 +273,6 @@ pub enum Geometry {
         /// Whether its normals point inwards.
         flip_normals: bool,
     },
-}
-
-/// Triangles with shared vertices.
-#[derive(Clone, Debug, Default)]
-pub struct Mesh {
-    /// Vertex positions, finite.
-    pub positions: Vec<[f32; 3]>,
-    /// One per vertex, or none: then the triangles are flat. Any length; zero falls back to the triangle's own.
-    pub normals: Vec<[f32; 3]>,
-    /// One per vertex, or none.
-    pub uvs: Vec<[f32; 2]>,
-    /// Corners, counter-clockwise seen from outside.
-    pub triangles: Vec<[u32; 3]>,
 }
 
 /// Lights that are not on a shape.

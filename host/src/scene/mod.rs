@@ -32,7 +32,8 @@ use choice::Lights;
 use description::GroupId;
 use group::{Group, Owner};
 use shape::{Shape, in_parts};
-use surface::{Finish, Stretch};
+use surface::{Detail, Finish};
+use texture::Face;
 
 /// A scene ready to be rendered; its coordinates are the file's, moved to the scene's own centre.
 #[derive(Debug)]
@@ -157,23 +158,24 @@ impl Scene {
         (shape.point(&self.geometry.surface(ray, hit), triangle), shape)
     }
 
-    /// How coordinates lie on the surface at a hit; nothing unless its finish asks for that.
+    /// How coordinates lie on the surface at a hit, and where in its mesh it is; nothing unless its finish asks for that.
     #[inline(always)]
-    fn stretch(&self, ray: &Ray, hit: &RayHit, frame: &Frame, shape: &Shape) -> Stretch {
-        if shape.bumpy { self.stretch_of_bumps(ray, hit, frame, shape) } else { Stretch::default() }
+    fn detail(&self, ray: &Ray, hit: &RayHit, frame: &Frame, shape: &Shape) -> Detail {
+        if shape.detailed { self.detail_of(ray, hit, frame, shape) } else { Detail::default() }
     }
 
     #[inline(never)]
-    fn stretch_of_bumps(&self, ray: &Ray, hit: &RayHit, frame: &Frame, shape: &Shape) -> Stretch {
+    fn detail_of(&self, ray: &Ray, hit: &RayHit, frame: &Frame, shape: &Shape) -> Detail {
         let owner = self.owners[hit.primitive.0 as usize];
         let at = self.geometry.surface(ray, hit);
-        match owner.triangle() {
-            Some(triangle) => shape.stretch(&at, triangle, None, frame),
+        let (triangle, stretch) = match owner.triangle() {
+            Some(triangle) => (triangle, shape.stretch(&at, triangle, None, frame)),
             None => {
                 let (_, triangle) = self.owner_in_instance(hit, owner);
-                shape.stretch(&at, triangle, Some(&self.geometry.to_world(hit).matrix3), frame)
+                (triangle, shape.stretch(&at, triangle, Some(&self.geometry.to_world(hit).matrix3), frame))
             }
-        }
+        };
+        Detail { stretch, face: Face { triangle, b1: at.local.x, b2: at.local.y } }
     }
 
     #[inline(never)]

@@ -30,7 +30,7 @@ impl Cells {
     /// As a texture's brightness lies over the unit square; `None` where it is the same everywhere.
     pub fn of(texture: &Texture) -> Option<Self> {
         let [width, height] = match texture {
-            Texture::Constant(_) => return None,
+            Texture::Constant(_) | Texture::Attribute { .. } => return None,
             Texture::Bitmap(bitmap) => [bitmap.width, bitmap.height],
             Texture::Checkerboard { .. } => [SIDES[1]; 2],
         };

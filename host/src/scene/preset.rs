@@ -12,7 +12,7 @@ use crate::{
         lights::{LightId, SceneLight},
         plain::{Lamp, Matt, Parts},
         shape::Shape,
-        surface::{Stretch, Surface},
+        surface::{Detail, Surface},
     },
 };
 
@@ -33,17 +33,17 @@ pub trait Preset: Copy {
     where
         Self: 'v;
 
-    /// How coordinates lie on a surface, if bumps may ask for it.
-    type Stretch: Copy;
+    /// What few finishes ask of a hit, if there may be such.
+    type Detail: Copy;
 
     /// What is kept of what a scene tells of a hit.
-    fn stretch(scene: &Scene, ray: &Ray, hit: &RayHit, frame: Frame, shape: &Shape) -> Self::Stretch;
+    fn detail(scene: &Scene, ray: &Ray, hit: &RayHit, frame: Frame, shape: &Shape) -> Self::Detail;
 
     /// The camera.
     fn camera<'v>(&'v self, scene: &'v Scene) -> &'v Self::Camera;
 
     /// The surface of that finish at `uv`.
-    fn bsdf<'v>(&'v self, scene: &'v Scene, sandbox: &'v Sandbox, finish: u32, uv: Vec2, stretch: Self::Stretch) -> Self::Bsdf<'v>;
+    fn bsdf<'v>(&'v self, scene: &'v Scene, sandbox: &'v Sandbox, finish: u32, uv: Vec2, detail: Self::Detail) -> Self::Bsdf<'v>;
 
     /// A light, by name.
     fn light<'v>(&'v self, scene: &'v Scene, sandbox: &'v Sandbox, id: LightId) -> Self::Light<'v>;
@@ -66,11 +66,11 @@ impl<const LIGHT_WALKS: bool> Preset for Any<LIGHT_WALKS> {
     type Camera = SceneCamera;
     type Bsdf<'v> = Surface<'v>;
     type Light<'v> = SceneLight<'v>;
-    type Stretch = Stretch;
+    type Detail = Detail;
 
     #[inline(always)]
-    fn stretch(scene: &Scene, ray: &Ray, hit: &RayHit, frame: Frame, shape: &Shape) -> Stretch {
-        scene.stretch(ray, hit, &frame, shape)
+    fn detail(scene: &Scene, ray: &Ray, hit: &RayHit, frame: Frame, shape: &Shape) -> Detail {
+        scene.detail(ray, hit, &frame, shape)
     }
 
     #[inline(always)]
@@ -79,8 +79,8 @@ impl<const LIGHT_WALKS: bool> Preset for Any<LIGHT_WALKS> {
     }
 
     #[inline(always)]
-    fn bsdf<'v>(&'v self, scene: &'v Scene, sandbox: &'v Sandbox, finish: u32, uv: Vec2, stretch: Stretch) -> Surface<'v> {
-        scene.finishes[finish as usize].at(uv, stretch, sandbox)
+    fn bsdf<'v>(&'v self, scene: &'v Scene, sandbox: &'v Sandbox, finish: u32, uv: Vec2, detail: Detail) -> Surface<'v> {
+        scene.finishes[finish as usize].at(uv, detail, sandbox)
     }
 
     #[inline(always)]
@@ -101,10 +101,10 @@ impl<'a, const LIGHT_WALKS: bool> Preset for Plain<'a, LIGHT_WALKS> {
         = &'v Lamp
     where
         Self: 'v;
-    type Stretch = ();
+    type Detail = ();
 
     #[inline(always)]
-    fn stretch(_: &Scene, _: &Ray, _: &RayHit, _: Frame, _: &Shape) {}
+    fn detail(_: &Scene, _: &Ray, _: &RayHit, _: Frame, _: &Shape) {}
 
     #[inline(always)]
     fn camera<'v>(&'v self, _: &'v Scene) -> &'v Self::Camera {

@@ -23,8 +23,8 @@ pub struct Shape {
     pub facing: Real,
     /// Whether anything asks for surface coordinates and tangents.
     pub mapped: bool,
-    /// Whether anything asks how coordinates lie on the surface.
-    pub bumpy: bool,
+    /// Whether anything asks how coordinates lie on the surface, or where in its mesh a hit is.
+    pub detailed: bool,
 }
 
 /// What is needed to tell normals and coordinates at a hit.

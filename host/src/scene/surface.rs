@@ -9,7 +9,10 @@ pub use self::finish::Finish;
 use self::finish::{Behind, Nested, Ready};
 use crate::{
     plugin::{Sandbox, ShaderId},
-    scene::description::{Bending, Material, NormalMap, PluginShader, Texture, TexturedParameter},
+    scene::{
+        description::{Bending, Material, NormalMap, PluginShader, Texture, TexturedParameter},
+        texture::{Coordinates, Face},
+    },
 };
 
 /// A built-in shader, ready to be asked.
@@ -91,7 +94,16 @@ pub struct Surface<'a> {
     finish: &'a Finish,
     sandbox: &'a Sandbox,
     uv: Vec2,
-    stretch: Stretch,
+    detail: Detail,
+}
+
+/// What few finishes ask of a hit.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Detail {
+    /// For bumps.
+    pub stretch: Stretch,
+    /// For attributes of meshes.
+    pub face: Face,
 }
 
 /// How a surface's coordinates lie on it, in its shading frame: ∂p/∂u = (a, 0) and ∂p/∂v = (b, c). Only bumps ask for it.
@@ -122,6 +134,12 @@ trait Question {
 }
 
 impl Surface<'_> {
+    /// Where its textures are looked up.
+    #[inline(always)]
+    fn at(&self) -> Coordinates {
+        Coordinates { uv: self.uv, face: self.detail.face }
+    }
+
     /// Asks the shader that ω_o meets.
     #[inline(always)]
     fn ask<Q: Question>(&self, wo: Vec3, question: Q) -> Q::Answer {
@@ -138,11 +156,11 @@ impl Surface<'_> {
                 if let Material::Plugin(PluginShader { textures, .. }) = &recipe.material
                     && !textures.is_empty()
                 {
-                    set_textured(self.sandbox, *id, textures, self.uv);
+                    set_textured(self.sandbox, *id, textures, self.at());
                 }
                 question.put(&self.sandbox.bsdf(*id), turn)
             }
-            Ready::Varying => question.put(&recipe.looked_up(self.uv), turn),
+            Ready::Varying => question.put(&recipe.looked_up(self.at()), turn),
             Ready::Made(nested) => self.ask_nested(nested, question, turn),
         }
     }
@@ -153,12 +171,12 @@ impl Surface<'_> {
         let part = |finish| Surface { finish, ..*self };
         match nested {
             Nested::Mask { opacity, bsdf } => {
-                let masked = standard::Blend { weight: share(opacity, self.uv), first: standard::Null, second: part(bsdf) };
+                let masked = standard::Blend { weight: share(opacity, self.at()), first: standard::Null, second: part(bsdf) };
                 question.put(&masked, turn)
             }
             Nested::Blend { weight, parts } => {
                 let [first, second] = &**parts;
-                question.put(&standard::Blend { weight: share(weight, self.uv), first: part(first), second: part(second) }, turn)
+                question.put(&standard::Blend { weight: share(weight, self.at()), first: part(first), second: part(second) }, turn)
             }
             Nested::Bent { map, bending: Bending { flips, shadowed }, bsdf } => {
                 let normal = self.normal(map);
@@ -173,10 +191,10 @@ impl Surface<'_> {
     fn normal(&self, map: &NormalMap) -> Vec3 {
         match map {
             NormalMap::Normals(normals) => {
-                let [x, y, z] = normals.at(self.uv).0;
+                let [x, y, z] = normals.at(self.at()).0;
                 math::normalize(Vec3::new(2.0 * x - 1.0, 2.0 * y - 1.0, 2.0 * z - 1.0)).unwrap_or(Vec3::Z)
             }
-            NormalMap::Heights(heights, scale) => self.stretch.bent(heights.slope(self.uv) * *scale),
+            NormalMap::Heights(heights, scale) => self.detail.stretch.bent(heights.slope(self.uv) * *scale),
         }
     }
 }
@@ -272,7 +290,7 @@ impl Bsdf for Surface<'_> {
 
     #[inline]
     fn lobes(&self) -> Lobe {
-        self.finish.lobes_at(self.uv)
+        self.finish.lobes_at(self.at())
     }
 
     #[inline]
@@ -288,13 +306,14 @@ impl Bsdf for Surface<'_> {
 
 /// Looks the textures of a plugin's parameters up.
 #[inline]
-pub(super) fn set_textured(sandbox: &Sandbox, id: ShaderId, textures: &[TexturedParameter], uv: Vec2) {
+pub(super) fn set_textured(sandbox: &Sandbox, id: ShaderId, textures: &[TexturedParameter], at: impl Into<Coordinates>) {
+    let at = at.into();
     if !textures.is_empty() {
-        sandbox.set(id, textures.iter().map(|parameter| (parameter.offset, parameter.texture.at(uv), parameter.channels)));
+        sandbox.set(id, textures.iter().map(|parameter| (parameter.offset, parameter.texture.at(at), parameter.channels)));
     }
 }
 
 /// A texture's first band as a part of a whole: between texels, rounding may leave 0 … 1.
-fn share(texture: &Texture, uv: Vec2) -> Real {
-    texture.at(uv)[0].clamp(0.0, 1.0)
+fn share(texture: &Texture, at: Coordinates) -> Real {
+    texture.at(at)[0].clamp(0.0, 1.0)
 }

@@ -83,16 +83,16 @@ impl<'a, P: Preset> View<'a, P> {
     }
 }
 
-/// A ray's end: the shape it met, and how coordinates lie on it, where a preset has bumps.
+/// A ray's end: the shape it met, and what few finishes ask of it, where a preset has those.
 #[derive(Clone, Copy, Debug)]
-pub struct Hit<'a, S> {
+pub struct Hit<'a, D> {
     shape: &'a Shape,
-    stretch: S,
+    detail: D,
 }
 
 impl<'s, P: Preset> bidir_kernel::Scene for View<'s, P> {
     const EFFECTS: Effects = P::EFFECTS;
-    type Hit = Hit<'s, P::Stretch>;
+    type Hit = Hit<'s, P::Detail>;
     type LightId = LightId;
     type Camera = P::Camera;
     type Bsdf<'a>
@@ -110,13 +110,13 @@ impl<'s, P: Preset> bidir_kernel::Scene for View<'s, P> {
     }
 
     #[inline(always)]
-    fn intersect(&self, ray: &Ray) -> Option<(Point, Hit<'s, P::Stretch>)> {
+    fn intersect(&self, ray: &Ray) -> Option<(Point, Hit<'s, P::Detail>)> {
         self.closest.set(self.closest.get() + 1);
         // The hit is read where it lies: `?` would copy it.
         let Some(hit) = &self.scene.geometry.closest(ray) else { return None };
         let (point, shape) = self.scene.met_shape(ray, hit);
-        let stretch = P::stretch(self.scene, ray, hit, point.frame, shape);
-        Some((point, Hit { shape, stretch }))
+        let detail = P::detail(self.scene, ray, hit, point.frame, shape);
+        Some((point, Hit { shape, detail }))
     }
 
     #[inline(always)]
@@ -126,8 +126,8 @@ impl<'s, P: Preset> bidir_kernel::Scene for View<'s, P> {
     }
 
     #[inline(always)]
-    fn bsdf(&self, point: &Point, hit: Hit<'s, P::Stretch>) -> P::Bsdf<'_> {
-        self.preset.bsdf(self.scene, &self.sandbox, hit.shape.finish, point.uv, hit.stretch)
+    fn bsdf(&self, point: &Point, hit: Hit<'s, P::Detail>) -> P::Bsdf<'_> {
+        self.preset.bsdf(self.scene, &self.sandbox, hit.shape.finish, point.uv, hit.detail)
     }
 
     #[inline(always)]
@@ -136,7 +136,7 @@ impl<'s, P: Preset> bidir_kernel::Scene for View<'s, P> {
     }
 
     #[inline(always)]
-    fn light_id_at(&self, hit: Hit<'s, P::Stretch>) -> Option<LightId> {
+    fn light_id_at(&self, hit: Hit<'s, P::Detail>) -> Option<LightId> {
         hit.shape.light
     }
 

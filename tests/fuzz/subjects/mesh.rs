@@ -9,7 +9,7 @@ use bidir::{
         mesh::{Format, Parsed, parse},
     },
     plugin::Library,
-    scene::description::{Description, Geometry, MaterialId, Mesh, Shape, ShapeLight, Texture},
+    scene::description::{Description, Geometry, MaterialId, Mesh, Per, Shape, ShapeLight, Texture},
 };
 use bidir_kernel::{Ray, Scene as _, Segment, Spectrum};
 use glam::{DAffine3, DVec3};
@@ -34,7 +34,7 @@ pub fn ply(data: &[u8]) {
 
 /// A mesh is refused with a remedy, or has finite vertices and corners that are there, is no larger than its file, and can be lit and hit.
 fn mesh(data: &[u8], format: Format) {
-    let Parsed { mesh, dropped } = match parse(data, format, Path::new("fuzz.mesh")) {
+    let Parsed { mesh, dropped, .. } = match parse(data, format, Path::new("fuzz.mesh")) {
         Ok(parsed) => parsed,
         Err(error) => return told(&error),
     };
@@ -44,6 +44,8 @@ fn mesh(data: &[u8], format: Format) {
     assert!(mesh.positions.as_flattened().iter().all(|v| v.abs() <= 1e30));
     assert!(mesh.normals.as_flattened().iter().chain(mesh.uvs.as_flattened()).all(|v| v.is_finite()));
     assert!([0, count].contains(&mesh.normals.len()) && [0, count].contains(&mesh.uvs.len()));
+    let length = |per| if per == Per::Vertex { count } else { mesh.triangles.len() };
+    assert!(mesh.attributes.iter().all(|attribute| attribute.values.len() == length(attribute.per)));
     assert!(mesh.triangles.as_flattened().iter().all(|corner| (*corner as usize) < count));
     if mesh.triangles.len() <= MOST_TRIANGLES {
         hit(Arc::new(mesh));

@@ -20,6 +20,7 @@ pub(super) fn mesh() -> Mesh {
         normals: SIDES.iter().flat_map(|(normal, _)| [*normal; 4]).collect(),
         uvs: SIDES.iter().flat_map(|_| [[0.0, 1.0], [1.0, 1.0], [1.0, 0.0], [0.0, 0.0]]).collect(),
         triangles: (0..6).flat_map(|side| [corner(side, [0, 1, 2]), corner(side, [3, 0, 2])]).collect(),
+        attributes: Vec::new(),
     }
 }
 

@@ -4,13 +4,14 @@ mod cube;
 mod normals;
 mod obj;
 mod ply;
+mod serialized;
 
 use std::{path::Path, sync::Arc};
 
 use super::{context::Context, properties::Properties, texture::named_here};
 use crate::{
     error::{Error, Result},
-    scene::description::Mesh,
+    scene::description::{Mesh, Per},
 };
 
 /// The largest mesh file, in bytes.
@@ -23,14 +24,20 @@ pub enum Format {
     Obj,
     /// Stanford PLY, ascii or binary.
     Ply,
+    /// Mitsuba's own, which may hold several meshes.
+    Serialized {
+        /// Which, from 0.
+        index: u32,
+    },
 }
 
 impl Format {
-    /// That of a shape of this type.
-    pub(super) fn of(kind: &str) -> Option<Self> {
+    /// That of a shape of this type; `index` is which mesh of its file it shows.
+    pub(super) fn of(kind: &str, index: u32) -> Option<Self> {
         match kind {
             "obj" => Some(Self::Obj),
             "ply" => Some(Self::Ply),
+            "serialized" => Some(Self::Serialized { index }),
             _ => None,
         }
     }
@@ -43,6 +50,8 @@ pub struct Parsed {
     pub mesh: Mesh,
     /// How many triangles were left out: without area, or with a corner that is no point.
     pub dropped: usize,
+    /// Whether the file itself says that its triangles are flat.
+    pub flat: bool,
 }
 
 /// Reads a mesh that is in memory already; messages call it `name`.
@@ -50,12 +59,13 @@ pub struct Parsed {
 /// # Errors
 /// If it is not in that format, or is no mesh of finite numbers with an area.
 pub fn parse(bytes: &[u8], format: Format, name: &Path) -> Result<Parsed> {
-    let mut mesh = match format {
-        Format::Obj => obj::read(bytes, name)?,
-        Format::Ply => ply::read(bytes, name)?,
+    let (mut mesh, facets) = match format {
+        Format::Obj => (obj::read(bytes, name)?, Facets::Smooth),
+        Format::Ply => (ply::read(bytes, name)?, Facets::Smooth),
+        Format::Serialized { index } => serialized::read(bytes, index, name)?,
     };
     let dropped = check(&mut mesh, name)?;
-    Ok(Parsed { mesh, dropped })
+    Ok(Parsed { mesh, dropped, flat: facets == Facets::Flat })
 }
 
 /// Reads a mesh's file.
@@ -77,15 +87,19 @@ enum Facets {
     Smooth,
 }
 
-/// The mesh of a shape of type `cube`, `obj` or `ply`.
+/// The mesh of a shape of type `cube`, `obj`, `ply` or `serialized`.
 pub(super) fn mesh(context: &mut Context, of: &Properties) -> Result<Arc<Mesh>> {
     let facets = if of.boolean("face_normals")?.unwrap_or(false) { Facets::Flat } else { Facets::Smooth };
     if of.kind() == "cube" {
         return Ok(Arc::new(finish(cube::mesh(), facets)));
     }
-    let format = if of.kind() == "obj" { Format::Obj } else { Format::Ply };
-    // Mitsuba's defaults: an OBJ's v points up and its images' v points down, so one is turned.
-    let flip = of.boolean("flip_tex_coords")?.unwrap_or(format == Format::Obj);
+    let index = if of.kind() == "serialized" { of.whole("shape_index", 0)?.unwrap_or(0) as u32 } else { 0 };
+    let format = Format::of(of.kind(), index).unwrap_or(Format::Ply);
+    // Mitsuba's defaults: an OBJ's v points up and its images' v points down, so one is turned. Its own format's never is.
+    let flip = match format {
+        Format::Serialized { .. } => false,
+        _ => of.boolean("flip_tex_coords")?.unwrap_or(format == Format::Obj),
+    };
     let flip = if flip { FlipV::Yes } else { FlipV::No };
     let path = context.file(of.required_text("filename")?, of.place_of("filename"))?;
     let key = format!("{format:?} {} {facets:?} {flip:?}", path.display());
@@ -94,7 +108,8 @@ pub(super) fn mesh(context: &mut Context, of: &Properties) -> Result<Arc<Mesh>> 
     }
     let here = |error: Error| named_here(&error, of.place_of("filename"));
     let ready = context.ahead.mesh(path.clone(), format);
-    let Parsed { mut mesh, dropped } = ready.map_or_else(|| read(&path, format), Ok).map_err(here)?;
+    let Parsed { mut mesh, dropped, flat } = ready.map_or_else(|| read(&path, format), Ok).map_err(here)?;
+    let facets = if flat { Facets::Flat } else { facets };
     if flip == FlipV::Yes {
         mesh.uvs.iter_mut().for_each(|uv| uv[1] = 1.0 - uv[1]);
     }
@@ -133,7 +148,13 @@ fn check(mesh: &mut Mesh, path: &Path) -> Result<usize> {
     let positions = &mesh.positions;
     // The bound keeps squares of differences within f64 and differences within f32.
     let is_point = |v: u32| positions[v as usize].iter().all(|x| x.abs() <= 1e30);
-    mesh.triangles.retain(|&corners| corners.into_iter().all(is_point) && normals::doubled_area(positions, corners) > 0.0);
+    let keep: Vec<bool> = (mesh.triangles.iter())
+        .map(|&corners| corners.into_iter().all(is_point) && normals::doubled_area(positions, corners) > 0.0)
+        .collect();
+    retain(&mut mesh.triangles, &keep);
+    for attribute in mesh.attributes.iter_mut().filter(|attribute| attribute.per == Per::Triangle) {
+        retain(&mut attribute.values, &keep);
+    }
     let Some(&[first, ..]) = mesh.triangles.first() else {
         let no_point = mesh.positions.iter().position(|position| !position.iter().all(|x| x.abs() <= 1e30));
         let but = no_point.map_or(String::new(), |at| format!("; vertex {at} (counted from 0) is no point"));
@@ -153,7 +174,16 @@ fn check(mesh: &mut Mesh, path: &Path) -> Result<usize> {
     fill_unused(&mut mesh.positions, &used, first);
     fill_unused(&mut mesh.normals, &used, first);
     fill_unused(&mut mesh.uvs, &used, first);
+    for attribute in mesh.attributes.iter_mut().filter(|attribute| attribute.per == Per::Vertex) {
+        fill_unused(&mut attribute.values, &used, first);
+    }
     Ok(before - mesh.triangles.len())
+}
+
+/// Leaves out what is not to be kept.
+fn retain<T>(values: &mut Vec<T>, keep: &[bool]) {
+    let mut keep = keep.iter();
+    values.retain(|_| keep.next() == Some(&true));
 }
 
 /// Gives what no triangle names the value of a vertex that one does.

@@ -89,6 +89,7 @@ impl Reader {
             normals: if any_normals { self.corners.iter().map(normal).collect() } else { Vec::new() },
             uvs: if any_uvs { self.corners.iter().map(uv).collect() } else { Vec::new() },
             triangles: self.triangles,
+            attributes: Vec::new(),
         })
     }
 }

@@ -3,12 +3,15 @@
 //! An own reader, because it checks every count against the bytes that are there before it takes memory for it,
 //! and decodes only the properties of a mesh.
 
+mod attributes;
+
 use std::path::Path;
 
+use self::attributes::{Group, groups};
 use super::super::suggest::did_you_mean;
 use crate::{
     error::{Error, Result},
-    scene::description::Mesh,
+    scene::description::{Attribute, Mesh, Per},
 };
 
 /// Reads a mesh; polygons become fans, and elements other than vertices and faces are passed over.
@@ -28,6 +31,8 @@ pub(super) fn read(bytes: &[u8], path: &Path) -> Result<Mesh> {
         }
         .map_err(|thing| fail(format!("element {}: {thing}", element.name)))?;
     }
+    // Faces may come in several elements; those of only some of them have no say.
+    mesh.attributes.retain(|attribute| attribute.per == Per::Vertex || attribute.values.len() == mesh.triangles.len());
     Ok(mesh)
 }
 
@@ -199,6 +204,23 @@ impl Source<'_> {
     }
 }
 
+impl Element {
+    /// Its attributes, still without values.
+    fn attributes(&self, kind: &str, per: Per) -> Vec<(Group, Attribute)> {
+        let names: Vec<_> = self.properties.iter().map(|p| p.length.is_none().then_some(p.name.as_str())).collect();
+        let empty = |group: Group| {
+            let attribute = Attribute { name: group.name.clone(), per, values: Vec::new() };
+            (group, attribute)
+        };
+        groups(kind, &names).into_iter().map(empty).collect()
+    }
+}
+
+/// An attribute's value in a row of properties; a number is every band.
+fn value(group: &Group, row: &[f64]) -> [f32; 3] {
+    std::array::from_fn(|band| row[group.at[band.min(group.at.len() - 1)]] as f32)
+}
+
 fn vertices(source: &mut Source, element: &Element, mesh: &mut Mesh) -> Told<()> {
     let find = |names: &[&str]| element.properties.iter().position(|p| p.length.is_none() && names.contains(&p.name.as_str()));
     let need = |name: &str| find(&[name]).ok_or_else(|| format!("there is no property \"{name}\""));
@@ -206,6 +228,7 @@ fn vertices(source: &mut Source, element: &Element, mesh: &mut Mesh) -> Told<()>
     let normal = [find(&["nx"]), find(&["ny"]), find(&["nz"])];
     let uv = [find(&["u", "s", "texture_u"]), find(&["v", "t", "texture_v"])];
     let mut row = vec![0.0; element.properties.len()];
+    let mut attributes = element.attributes("vertex_", Per::Vertex);
     for _ in 0..element.count {
         for (value, property) in row.iter_mut().zip(&element.properties) {
             *value = source.property(property)?;
@@ -217,7 +240,11 @@ fn vertices(source: &mut Source, element: &Element, mesh: &mut Mesh) -> Told<()>
         if let [Some(u), Some(v)] = uv {
             mesh.uvs.push([u, v].map(|at| row[at] as f32));
         }
+        for (group, attribute) in &mut attributes {
+            attribute.values.push(value(group, &row));
+        }
     }
+    mesh.attributes.extend(attributes.into_iter().map(|(_, attribute)| attribute));
     Ok(())
 }
 
@@ -228,10 +255,13 @@ fn faces(source: &mut Source, element: &Element, mesh: &mut Mesh) -> Told<()> {
         return Err(format!("there is no list \"vertex_indices\" {}", did_you_mean("vertex_indices", &has)).trim_end().into());
     }
     let mut corners = Vec::new();
+    let mut row = vec![0.0; element.properties.len()];
+    let mut attributes = element.attributes("face_", Per::Triangle);
+    let before = mesh.triangles.len();
     for _ in 0..element.count {
-        for property in &element.properties {
+        for (last, property) in row.iter_mut().zip(&element.properties) {
             if !is_corners(property) {
-                source.property(property)?;
+                *last = source.property(property)?;
                 continue;
             }
             corners.clear();
@@ -247,7 +277,11 @@ fn faces(source: &mut Source, element: &Element, mesh: &mut Mesh) -> Told<()> {
             }
             mesh.triangles.extend(corners[1..].windows(2).map(|pair| [corners[0], pair[0], pair[1]]));
         }
+        for (group, attribute) in &mut attributes {
+            attribute.values.resize(mesh.triangles.len() - before, value(group, &row));
+        }
     }
+    mesh.attributes.extend(attributes.into_iter().map(|(_, attribute)| attribute));
     Ok(())
 }
 
@@ -300,6 +334,17 @@ mod tests {
         assert_eq!((&little.positions, &little.normals, &little.triangles), (&big.positions, &big.normals, &big.triangles));
         assert_eq!(little.positions[2], [0.0, 2.5, 0.0]);
         assert_eq!(little.triangles, [[0, 1, 2]]);
+    }
+
+    #[test]
+    fn each_triangle_of_a_polygon_has_the_polygons_colour() {
+        let header = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nproperty uchar heat_x\n\
+                      element face 2\nproperty float r\nproperty float g\nproperty float b\nproperty list uchar int vertex_index\nend_header\n";
+        let text = format!("{header}0 0 0 9\n1 0 0 8\n1 1 0 7\n0 1 0 6\n.1 .2 .3 4 0 1 2 3\n.4 .5 .6 3 0 1 2\n");
+        let mesh = mesh(text.as_bytes()).unwrap();
+        let values = |name: &str| mesh.attributes.iter().find(|attribute| attribute.name == name).map(|attribute| &attribute.values[..]);
+        assert_eq!(values("vertex_heat"), Some(&[[9.0; 3], [8.0; 3], [7.0; 3], [6.0; 3]][..]));
+        assert_eq!(values("face_color"), Some(&[[0.1, 0.2, 0.3], [0.1, 0.2, 0.3], [0.4, 0.5, 0.6]][..]));
     }
 
     #[test]

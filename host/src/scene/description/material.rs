@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use bidir_kernel::Spectrum;
 
+use super::Mesh;
 use crate::{image::texels::Texels, plugin::Module};
 
 /// A material's name: its index in [`super::Description::materials`].
@@ -25,6 +26,15 @@ pub enum Texture {
         color1: Spectrum,
         /// Applied to uv first.
         to_uv: UvTransform,
+    },
+    /// What is known of a mesh's vertices or triangles.
+    Attribute {
+        /// The mesh that wears it.
+        mesh: Arc<Mesh>,
+        /// Which one of [`Mesh::attributes`].
+        index: usize,
+        /// Multiplies its values.
+        scale: f32,
     },
 }
 

@@ -3,12 +3,13 @@
 use bidir_kernel::{Bsdf, Effects, Lobe, Spectrum, Vec2};
 use bidir_standard as standard;
 
-use super::{Shader, Stretch, Surface, share};
+use super::{Detail, Shader, Surface, share};
 use crate::{
     plugin::{Roster, Sandbox, ShaderId},
     scene::{
         description::{Bending, Distribution, Material, MaterialId, NormalMap, Texture},
         plain::Matt,
+        texture::Coordinates,
     },
 };
 
@@ -74,10 +75,10 @@ impl Nested {
         }
     }
 
-    fn lobes(&self, uv: Vec2) -> Lobe {
-        let of_parts = self.parts().iter().map(|part| part.lobes_at(uv)).fold(Lobe::NONE, |all, lobes| all | lobes);
+    fn lobes(&self, at: Coordinates) -> Lobe {
+        let of_parts = self.parts().iter().map(|part| part.lobes_at(at)).fold(Lobe::NONE, |all, lobes| all | lobes);
         match self {
-            Self::Mask { opacity, .. } if opacity.at(uv)[0] < 1.0 => of_parts | Lobe::DELTA_TRANSMISSION,
+            Self::Mask { opacity, .. } if opacity.at(at)[0] < 1.0 => of_parts | Lobe::DELTA_TRANSMISSION,
             _ => of_parts,
         }
     }
@@ -110,8 +111,8 @@ impl Finish {
 
     /// The surface at `uv`, whose plugins, if there are any, are asked in `sandbox`.
     #[inline(always)]
-    pub fn at<'a>(&'a self, uv: Vec2, stretch: Stretch, sandbox: &'a Sandbox) -> Surface<'a> {
-        Surface { finish: self, sandbox, uv, stretch }
+    pub fn at<'a>(&'a self, uv: Vec2, detail: Detail, sandbox: &'a Sandbox) -> Surface<'a> {
+        Surface { finish: self, sandbox, uv, detail }
     }
 
     /// Whether anything varies over the surface, or about its normal: then hits need uv, and frames that follow u.
@@ -119,12 +120,13 @@ impl Finish {
         self.recipes().any(|recipe| recipe.varies() || recipe.anisotropic() || recipe.parts().iter().any(Self::mapped))
     }
 
-    /// Whether it has bumps: then hits need to know how coordinates lie on the surface.
-    pub fn bumpy(&self) -> bool {
-        let bumps = |recipe: &Recipe| {
-            matches!(recipe.material, Material::Bent { map: NormalMap::Heights(..), .. }) || recipe.parts().iter().any(Self::bumpy)
+    /// Whether it has bumps or attributes of a mesh: then hits need a [`Detail`].
+    pub fn detailed(&self) -> bool {
+        let of_itself = |recipe: &Recipe| {
+            matches!(recipe.material, Material::Bent { map: NormalMap::Heights(..), .. })
+                || recipe.material.textures().iter().any(|texture| matches!(texture, Texture::Attribute { .. }))
         };
-        self.recipes().any(bumps)
+        self.recipes().any(|recipe| of_itself(recipe) || recipe.parts().iter().any(Self::detailed))
     }
 
     fn recipes(&self) -> impl Iterator<Item = &Recipe> {
@@ -156,14 +158,14 @@ impl Finish {
 
     /// Every lobe the surface has at uv (0, 0), for what `explain` says of it.
     pub fn lobes(&self) -> Lobe {
-        self.lobes_at(Vec2::ZERO)
+        self.lobes_at(Coordinates::default())
     }
 
     #[inline]
-    pub(super) fn lobes_at(&self, uv: Vec2) -> Lobe {
+    pub(super) fn lobes_at(&self, at: Coordinates) -> Lobe {
         match &self.behind {
-            Behind::Other(recipe) => self.front.lobes(uv) | recipe.lobes(uv),
-            _ => self.front.lobes(uv),
+            Behind::Other(recipe) => self.front.lobes(at) | recipe.lobes(at),
+            _ => self.front.lobes(at),
         }
     }
 }
@@ -182,7 +184,7 @@ impl Recipe {
         } else if let Material::Plugin(shader) = material {
             recipe.shader = Ready::Plugin(roster.add(&shader.module, &shader.block), shader.module.manifest().lobes());
         } else if !recipe.varies() {
-            recipe.shader = Ready::Fixed(recipe.looked_up(Vec2::ZERO));
+            recipe.shader = Ready::Fixed(recipe.looked_up(Coordinates::default()));
         }
         Some(recipe)
     }
@@ -210,54 +212,54 @@ impl Recipe {
     }
 
     #[inline]
-    fn lobes(&self, uv: Vec2) -> Lobe {
+    fn lobes(&self, at: Coordinates) -> Lobe {
         match &self.shader {
             Ready::Fixed(shader) => shader.lobes(),
             Ready::Plugin(_, lobes) => *lobes,
-            Ready::Made(nested) => nested.lobes(uv),
-            Ready::Varying => self.looked_up(uv).lobes(),
+            Ready::Made(nested) => nested.lobes(at),
+            Ready::Varying => self.looked_up(at).lobes(),
         }
     }
 
     /// A built-in shader at `uv`.
-    pub(super) fn looked_up(&self, uv: Vec2) -> Shader {
+    pub(super) fn looked_up(&self, at: Coordinates) -> Shader {
         match &self.material {
-            Material::Diffuse { reflectance } => Shader::Diffuse(standard::Diffuse { reflectance: reflectance.at(uv) }),
+            Material::Diffuse { reflectance } => Shader::Diffuse(standard::Diffuse { reflectance: reflectance.at(at) }),
             Material::Conductor { eta, k, specular_reflectance } => {
-                Shader::Conductor(standard::Conductor { eta: *eta, k: *k, specular_reflectance: specular_reflectance.at(uv) })
+                Shader::Conductor(standard::Conductor { eta: *eta, k: *k, specular_reflectance: specular_reflectance.at(at) })
             }
             Material::RoughConductor { eta, k, specular_reflectance, distribution, alpha_u, alpha_v } => {
                 Shader::RoughConductor(standard::RoughConductor {
                     eta: *eta,
                     k: *k,
-                    specular_reflectance: specular_reflectance.at(uv),
-                    microfacet: microfacet(*distribution, alpha_u, alpha_v, uv),
+                    specular_reflectance: specular_reflectance.at(at),
+                    microfacet: microfacet(*distribution, alpha_u, alpha_v, at),
                 })
             }
             Material::Dielectric { eta, specular_reflectance, specular_transmittance } => Shader::Dielectric(standard::Dielectric {
                 eta: *eta,
-                specular_reflectance: specular_reflectance.at(uv),
-                specular_transmittance: specular_transmittance.at(uv),
+                specular_reflectance: specular_reflectance.at(at),
+                specular_transmittance: specular_transmittance.at(at),
             }),
             Material::ThinDielectric { eta, specular_reflectance, specular_transmittance } => {
                 Shader::ThinDielectric(standard::ThinDielectric {
                     eta: *eta,
-                    specular_reflectance: specular_reflectance.at(uv),
-                    specular_transmittance: specular_transmittance.at(uv),
+                    specular_reflectance: specular_reflectance.at(at),
+                    specular_transmittance: specular_transmittance.at(at),
                 })
             }
             Material::RoughDielectric { eta, specular_reflectance, specular_transmittance, distribution, alpha_u, alpha_v } => {
                 Shader::RoughDielectric(standard::RoughDielectric {
                     eta: *eta,
-                    specular_reflectance: specular_reflectance.at(uv),
-                    specular_transmittance: specular_transmittance.at(uv),
-                    microfacet: microfacet(*distribution, alpha_u, alpha_v, uv),
+                    specular_reflectance: specular_reflectance.at(at),
+                    specular_transmittance: specular_transmittance.at(at),
+                    microfacet: microfacet(*distribution, alpha_u, alpha_v, at),
                 })
             }
             Material::Plastic { diffuse_reflectance, specular_reflectance, .. }
             | Material::RoughPlastic { diffuse_reflectance, specular_reflectance, .. } => {
                 let Some(coated) = &self.coated else { return Shader::Null(standard::Null) };
-                let (diffuse_reflectance, specular_reflectance) = (diffuse_reflectance.at(uv), specular_reflectance.at(uv));
+                let (diffuse_reflectance, specular_reflectance) = (diffuse_reflectance.at(at), specular_reflectance.at(at));
                 let plastic = standard::Plastic { diffuse_reflectance, specular_reflectance, ..coated.plastic };
                 match self.material {
                     Material::Plastic { .. } => Shader::Plastic(plastic),
@@ -265,30 +267,30 @@ impl Recipe {
                 }
             }
             Material::Principled(of) => Shader::Principled(standard::Principled {
-                base_color: of.base_color.at(uv),
-                roughness: share(&of.roughness, uv),
-                anisotropic: share(&of.anisotropic, uv),
-                metallic: share(&of.metallic, uv),
-                spec_trans: share(&of.spec_trans, uv),
-                eta: of.eta.at(uv)[0],
-                spec_tint: share(&of.spec_tint, uv),
-                sheen: share(&of.sheen, uv),
-                sheen_tint: share(&of.sheen_tint, uv),
-                flatness: share(&of.flatness, uv),
-                clearcoat: share(&of.clearcoat, uv),
-                clearcoat_gloss: share(&of.clearcoat_gloss, uv),
+                base_color: of.base_color.at(at),
+                roughness: share(&of.roughness, at),
+                anisotropic: share(&of.anisotropic, at),
+                metallic: share(&of.metallic, at),
+                spec_trans: share(&of.spec_trans, at),
+                eta: of.eta.at(at)[0],
+                spec_tint: share(&of.spec_tint, at),
+                sheen: share(&of.sheen, at),
+                sheen_tint: share(&of.sheen_tint, at),
+                flatness: share(&of.flatness, at),
+                clearcoat: share(&of.clearcoat, at),
+                clearcoat_gloss: share(&of.clearcoat_gloss, at),
             }),
             Material::PrincipledThin(of) => Shader::PrincipledThin(standard::PrincipledThin {
-                base_color: of.base_color.at(uv),
-                roughness: share(&of.roughness, uv),
-                anisotropic: share(&of.anisotropic, uv),
-                spec_trans: share(&of.spec_trans, uv),
-                eta: of.eta.at(uv)[0],
-                spec_tint: share(&of.spec_tint, uv),
-                sheen: share(&of.sheen, uv),
-                sheen_tint: share(&of.sheen_tint, uv),
-                flatness: share(&of.flatness, uv),
-                diff_trans: of.diff_trans.at(uv)[0].clamp(0.0, 2.0),
+                base_color: of.base_color.at(at),
+                roughness: share(&of.roughness, at),
+                anisotropic: share(&of.anisotropic, at),
+                spec_trans: share(&of.spec_trans, at),
+                eta: of.eta.at(at)[0],
+                spec_tint: share(&of.spec_tint, at),
+                sheen: share(&of.sheen, at),
+                sheen_tint: share(&of.sheen_tint, at),
+                flatness: share(&of.flatness, at),
+                diff_trans: of.diff_trans.at(at)[0].clamp(0.0, 2.0),
             }),
             // Modules and those that are made of others are not looked up.
             _ => Shader::Null(standard::Null),
@@ -314,7 +316,7 @@ fn slopes(distribution: Distribution) -> standard::Distribution {
     }
 }
 
-fn microfacet(distribution: Distribution, alpha_u: &Texture, alpha_v: &Texture, uv: Vec2) -> standard::Microfacet {
+fn microfacet(distribution: Distribution, alpha_u: &Texture, alpha_v: &Texture, at: Coordinates) -> standard::Microfacet {
     let distribution = slopes(distribution);
-    standard::Microfacet { distribution, alpha_u: alpha_u.at(uv)[0], alpha_v: alpha_v.at(uv)[0] }
+    standard::Microfacet { distribution, alpha_u: alpha_u.at(at)[0], alpha_v: alpha_v.at(at)[0] }
 }
