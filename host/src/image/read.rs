@@ -91,6 +91,22 @@ pub fn decode(bytes: &[u8], name: &Path, encoding: Encoding, limits: &Limits) ->
     decoded.map_err(|thing| Error::in_file(name, format!("cannot be decoded ({thing})"), REMEDY))
 }
 
+/// Decodes a PNG or another image of whole numbers as [`decode`] does, and how opaque each pixel is: 0 … 1, or nothing where all are.
+///
+/// # Errors
+/// As [`decode`].
+pub fn decode_with_alpha(bytes: &[u8], name: &Path, encoding: Encoding, limits: &Limits) -> Result<(Pixels, Vec<f32>)> {
+    let decoded = quietly(|| {
+        let decoded = whole_numbers(bytes, name, limits)?;
+        let alpha = match decoded.color().has_alpha() {
+            true => decoded.to_rgba16().pixels().map(|p| f32::from(p.0[3]) / 65535.0).collect(),
+            false => Vec::new(),
+        };
+        Ok((linear(&decoded, encoding), alpha))
+    });
+    decoded.map_err(|thing| Error::in_file(name, format!("cannot be decoded ({thing})"), REMEDY))
+}
+
 const REMEDY: &str = "name an EXR, HDR, PNG, JPEG, BMP or TGA image";
 
 impl Pixels {
@@ -174,6 +190,11 @@ fn floats(samples: &FlatSamples) -> Vec<f32> {
 }
 
 fn other(bytes: &[u8], path: &Path, encoding: Encoding, limits: &Limits) -> std::result::Result<Pixels, String> {
+    Ok(linear(&whole_numbers(bytes, path, limits)?, encoding))
+}
+
+/// What the crate `image` reads.
+fn whole_numbers(bytes: &[u8], path: &Path, limits: &Limits) -> std::result::Result<DynamicImage, String> {
     let mut reader = image::ImageReader::new(Cursor::new(bytes));
     // TGA has no signature, so there the name decides.
     if let Ok(format) = image::ImageFormat::from_path(path) {
@@ -186,8 +207,11 @@ fn other(bytes: &[u8], path: &Path, encoding: Encoding, limits: &Limits) -> std:
     theirs.max_alloc = Some(limits.pixels * 16);
     reader.limits(theirs);
     let decoded = reader.decode().map_err(|e| e.to_string())?;
-    let (width, height) = (decoded.width(), decoded.height());
-    check_size(width.into(), height.into(), limits)?;
+    check_size(decoded.width().into(), decoded.height().into(), limits)?;
+    Ok(decoded)
+}
+
+fn linear(decoded: &DynamicImage, encoding: Encoding) -> Pixels {
     let values = match decoded {
         DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_) => decoded.to_rgb32f().pixels().map(|p| Spectrum(p.0)).collect(),
         DynamicImage::ImageLuma16(_) | DynamicImage::ImageLumaA16(_) | DynamicImage::ImageRgb16(_) | DynamicImage::ImageRgba16(_) => {
@@ -198,7 +222,7 @@ fn other(bytes: &[u8], path: &Path, encoding: Encoding, limits: &Limits) -> std:
             decoded.to_rgb8().pixels().map(|p| Spectrum(p.0.map(|v| table[usize::from(v)]))).collect()
         }
     };
-    Ok(Pixels { width, height, values })
+    Pixels { width: decoded.width(), height: decoded.height(), values }
 }
 
 impl Encoding {
