@@ -84,7 +84,8 @@ impl Asset {
             None => return Err(fail(format!("has {count} elements and no bytes"))),
         };
         if let Some(sparse) = &accessor.sparse {
-            self.replace(&mut values, sparse, component, accessor.normalized, read).map_err(|e| fail(format!("is sparse, and {}", e.thing)))?;
+            self.replace(&mut values, sparse, component, accessor.normalized, read)
+                .map_err(|e| fail(format!("is sparse, and {}", e.thing)))?;
         }
         Ok(values)
     }

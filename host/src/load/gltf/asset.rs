@@ -76,7 +76,8 @@ impl Asset {
             Uri::Data(bytes) => Ok(bytes),
             Uri::Files(files) => {
                 let file = files.iter().find(|file| file.exists()).unwrap_or(&files[0]);
-                let missing = |thing| self.error(format!("{label}: {} {thing}", file.display()), "put it there, or export a .glb, which holds all");
+                let missing =
+                    |thing| self.error(format!("{label}: {} {thing}", file.display()), "put it there, or export a .glb, which holds all");
                 bytes(file).map_err(missing)
             }
         }
@@ -90,7 +91,8 @@ impl Asset {
         let bytes = self.buffers.get(buffer).ok_or_else(|| self.missing(&format!("buffer {buffer}")))?;
         let Some(bytes) = bytes else { return Err(self.error(format!("buffer {buffer} has no bytes"), DAMAGED)) };
         let start = view.byte_offset.unwrap_or_default().0;
-        let range = start.checked_add(view.byte_length.0).and_then(|end| bytes.get(usize::try_from(start).ok()?..usize::try_from(end).ok()?));
+        let range =
+            start.checked_add(view.byte_length.0).and_then(|end| bytes.get(usize::try_from(start).ok()?..usize::try_from(end).ok()?));
         range.ok_or_else(|| {
             let thing = format!("{label} is {} bytes from {start} of buffer {buffer}, which has {}", view.byte_length.0, bytes.len());
             self.error(thing, DAMAGED)

@@ -3,7 +3,11 @@
 use ::gltf::json::{Camera as Source, camera::Type, validation::Checked};
 use glam::{DAffine3, DMat3, DVec2, DVec3};
 
-use super::{Reader, asset::{DAMAGED, label}, node::Placed};
+use super::{
+    Reader,
+    asset::{DAMAGED, label},
+    node::Placed,
+};
 use crate::{
     error::Result,
     load::defines::Defines,

@@ -45,7 +45,7 @@ pub const EXTENSIONS: &[(&str, Support)] = &[
     ("KHR_materials_volume", Support::Approximated),
     ("KHR_mesh_quantization", Support::Done),
     ("KHR_meshopt_compression", Support::LeftOut("export it without compression")),
-    ("KHR_node_visibility", Support::LeftOut("delete what is not to be seen")),
+    ("KHR_node_visibility", Support::Done),
     ("KHR_texture_basisu", Support::LeftOut("export its images as PNG or JPEG")),
     ("KHR_texture_transform", Support::Done),
     ("KHR_xmp", WITHOUT),
@@ -56,10 +56,12 @@ pub const EXTENSIONS: &[(&str, Support)] = &[
 pub(super) fn check_required(asset: &Asset) -> Result<()> {
     let understood = |name: &str| EXTENSIONS.iter().find(|(known, _)| *known == name).map_or(WITHOUT, |(_, support)| *support);
     let required = asset.root.extensions_required.iter().map(|name| (name, understood(name)));
-    let refused: Vec<_> = required.filter_map(|(name, support)| match support {
-        Support::LeftOut(remedy) => Some((name.as_str(), remedy)),
-        Support::Done | Support::Approximated => None,
-    }).collect();
+    let refused: Vec<_> = required
+        .filter_map(|(name, support)| match support {
+            Support::LeftOut(remedy) => Some((name.as_str(), remedy)),
+            Support::Done | Support::Approximated => None,
+        })
+        .collect();
     let Some((_, remedy)) = refused.first() else { return Ok(()) };
     let names: Vec<_> = refused.iter().map(|(name, _)| *name).collect();
     Err(asset.error(format!("requires {}, which is not read here", names.join(" and ")), *remedy))
@@ -188,5 +190,26 @@ mod tests {
             assert!(row.starts_with(&format!("| `{name}` | {said}")), "{name}: {row}");
         }
         assert!(EXTENSIONS.is_sorted_by_key(|(name, _)| name));
+    }
+
+    #[test]
+    fn the_docs_name_all_that_is_left_out() {
+        let docs = include_str!("../../../../docs/gltf.md");
+        let sources = [
+            include_str!("mod.rs"),
+            include_str!("mesh.rs"),
+            include_str!("principled.rs"),
+            include_str!("shape.rs"),
+            include_str!("texture.rs"),
+        ];
+        let mut count = 0;
+        for source in sources {
+            for (_, rest) in source.match_indices("leave_out(\"").map(|(at, found)| source.split_at(at + found.len())) {
+                let what = rest.split('"').next().unwrap();
+                assert!(docs.contains(what), "docs/gltf.md does not say that this is left out: {what}");
+                count += 1;
+            }
+        }
+        assert!(count >= 12, "{count}");
     }
 }

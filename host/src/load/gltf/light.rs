@@ -3,7 +3,11 @@
 use bidir_kernel::Spectrum;
 use serde::Deserialize;
 
-use super::{Reader, asset::{DAMAGED, label}, node::Placed};
+use super::{
+    Reader,
+    asset::{DAMAGED, label},
+    node::Placed,
+};
 use crate::{
     error::Result,
     load::defines::Defines,
@@ -109,7 +113,9 @@ impl Reader<'_> {
                 let [beam_width, cutoff_angle] = [inner, outer].map(|angle| f64::from(angle).to_degrees());
                 Ok(EmitterKind::Spot { to_world, intensity, cutoff_angle, beam_width })
             }
-            other => fail(format!("is of type \"{}\"", other.chars().take(40).collect::<String>()), "there are point, spot and directional"),
+            other => {
+                fail(format!("is of type \"{}\"", other.chars().take(40).collect::<String>()), "there are point, spot and directional")
+            }
         }
     }
 }

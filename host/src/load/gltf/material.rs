@@ -171,7 +171,8 @@ impl Reader<'_> {
             return Err(self.asset.error(format!("the scale of the normalTexture of {} is not finite", open.name), DAMAGED));
         }
         let up = if laid == Laid::Straight { across } else { -across };
-        let scaled = |v: f32, scale: f32| 0.5 + 0.5 * scale * (2.0 * v - 1.0);
+        // A scale of 1 changes no bit.
+        let scaled = |v: f32, scale: f32| v + (scale - 1.0) * (v - 0.5);
         let pick = |c: Spectrum, _: f32| Spectrum([scaled(c[0], across), scaled(c[1], up), c[2]]);
         let map = self.texture(info, Encoding::Linear, format!("normals times {across}, {up}"), &mut open.uv_set, pick)?;
         // What is the same everywhere is flat, but for rounding.
@@ -190,9 +191,7 @@ impl Reader<'_> {
             return Ok(None);
         }
         let radiance = match &open.source.emissive_texture {
-            Some(info) => {
-                self.texture(info, Encoding::Srgb, format!("times {factor:?}"), &mut open.uv_set, |c, _| times(c, factor))?
-            }
+            Some(info) => self.texture(info, Encoding::Srgb, format!("times {factor:?}"), &mut open.uv_set, |c, _| times(c, factor))?,
             None => Texture::Constant(Spectrum(factor)),
         };
         let Some(light) = self.shape_light(&radiance, &open.name) else { return Ok(None) };

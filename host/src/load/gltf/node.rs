@@ -3,11 +3,24 @@
 use ::gltf::json::{Index, Node, scene::UnitQuaternion};
 use glam::{DAffine3, DMat3, DQuat, DVec3, DVec4};
 
+use serde::Deserialize;
+
 use super::asset::{Asset, DAMAGED, label};
 use crate::error::Result;
 
 /// Numbers beyond this are no places.
 const FAR: f64 = 1e30;
+
+/// `KHR_node_visibility`
+#[derive(Deserialize)]
+struct Visibility {
+    #[serde(default = "seen")]
+    visible: bool,
+}
+
+fn seen() -> bool {
+    true
+}
 
 /// A node of the scene.
 #[derive(Clone, Copy, Debug)]
@@ -38,7 +51,7 @@ impl Placed<'_> {
 }
 
 impl Asset {
-    /// Every node of the scene, parents before their children.
+    /// Every node of the scene that is to be seen, parents before their children.
     pub(super) fn nodes(&self) -> Result<Vec<Placed<'_>>> {
         let mut waiting: Vec<(usize, DAffine3)> = self.roots()?.into_iter().rev().map(|node| (node, DAffine3::IDENTITY)).collect();
         let mut seen = vec![false; self.root.nodes.len()];
@@ -48,6 +61,11 @@ impl Asset {
             let name = || label("node", index, node.name.as_ref());
             if std::mem::replace(&mut seen[index], true) {
                 return Err(self.error(format!("{} has two parents, or is its own", name()), DAMAGED));
+            }
+            let others = node.extensions.as_ref().map(|all| &all.others);
+            let hidden = self.extension::<Visibility>(others, "KHR_node_visibility", &name())?.is_some_and(|said| !said.visible);
+            if hidden {
+                continue;
             }
             let to_world = parent * self.local(node, &name())?;
             if !to_world.to_cols_array().iter().all(|v| v.abs() <= FAR) {

@@ -117,7 +117,8 @@ impl Reader<'_> {
         if counts.into_iter().flatten().any(|other| other != count) {
             return Err(fail("has attributes of different lengths"));
         }
-        let vector = |of: &Option<Vec<[f32; 3]>>, i: usize, otherwise| of.as_ref().map_or(otherwise, |of| DVec3::from_array(of[i].map(f64::from)));
+        let vector =
+            |of: &Option<Vec<[f32; 3]>>, i: usize, otherwise| of.as_ref().map_or(otherwise, |of| DVec3::from_array(of[i].map(f64::from)));
         let mut all = Vec::with_capacity(count);
         for i in 0..count {
             let rotation = rotations.as_ref().map_or([0.0, 0.0, 0.0, 1.0], |of| of[i]);
@@ -151,7 +152,8 @@ impl Reader<'_> {
                 continue;
             }
             let [straight, mirrored] = by_handedness(&mesh);
-            let other = if mirrored.triangles.is_empty() { surface.material } else { self.surface(primitive.material, Laid::Mirrored)?.material };
+            let other =
+                if mirrored.triangles.is_empty() { surface.material } else { self.surface(primitive.material, Laid::Mirrored)?.material };
             part(straight, surface.material);
             part(mirrored, other);
         }
