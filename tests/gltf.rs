@@ -96,7 +96,9 @@ fn assert_alike(name: &str, folder: &TempDir, model: &Model, xml: &str) {
     };
     let wanted = image(&xml);
     assert!(mean_of(&wanted) > 0.01, "{name} is dark");
-    for path in [write("model.gltf", &model.gltf()), write("model.glb", &model.glb())] {
+    let (beside, buffer) = model.beside("its%20buffer.bin");
+    write("its buffer.bin", buffer);
+    for path in [write("model.gltf", &model.gltf()), write("model.glb", &model.glb()), write("beside.gltf", &beside)] {
         let found = image(&path);
         if found != wanted {
             let folder = leave(name, &[("gltf", &found), ("xml", &wanted)]);

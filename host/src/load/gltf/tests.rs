@@ -19,6 +19,13 @@ fn read(name: &str, bytes: &[u8]) -> Result<Loaded> {
     load(&path, &[])
 }
 
+/// A node with a square that has this material.
+fn square_of(model: &mut Model, material: serde_json::Value) {
+    let material = model.add("materials", material);
+    let mesh = model.square(serde_json::json!({"material": material}));
+    model.node(serde_json::json!({"mesh": mesh}));
+}
+
 fn loaded(model: &Model) -> Loaded {
     read("m.gltf", &model.gltf()).unwrap()
 }

@@ -9,9 +9,12 @@ fn everything() -> Model {
     let mut model = Model::default();
     let texture = model.texture(2, &[[255, 128, 0, 255], [0, 64, 255, 51]]);
     let named = json!({"index": texture, "extensions": {"KHR_texture_transform": {"offset": [0.5, 0.5]}}});
-    model.square_of(json!({"normalTexture": {"index": texture}, "emissiveFactor": [1, 1, 1], "alphaMode": "BLEND",
+    square_of(
+        &mut model,
+        json!({"normalTexture": {"index": texture}, "emissiveFactor": [1, 1, 1], "alphaMode": "BLEND",
         "pbrMetallicRoughness": {"baseColorTexture": named, "metallicRoughnessTexture": named},
-        "extensions": {"KHR_materials_transmission": {"transmissionFactor": 0.5}, "KHR_materials_clearcoat": {"clearcoatFactor": 0.5}}}));
+        "extensions": {"KHR_materials_transmission": {"transmissionFactor": 0.5}, "KHR_materials_clearcoat": {"clearcoatFactor": 0.5}}}),
+    );
     let camera = model.add("cameras", json!({"type": "perspective", "perspective": {"yfov": 1.0, "aspectRatio": 2.0, "znear": 0.1}}));
     model.set("extensions", json!({"KHR_lights_punctual": {"lights": [{"type": "spot", "intensity": 8.0}]}}));
     model.node(json!({"camera": camera, "rotation": [0, 0, 0, 1], "extensions": {"KHR_lights_punctual": {"light": 0}}}));

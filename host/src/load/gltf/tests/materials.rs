@@ -8,7 +8,7 @@ use crate::scene::description::{NormalMap, Principled, ShapeLight, Wrap};
 /// A scene of one square of this material.
 fn of(material: Value) -> Loaded {
     let mut model = Model::default();
-    model.square_of(material);
+    square_of(&mut model, material);
     loaded(&model)
 }
 
@@ -67,7 +67,7 @@ fn colours_are_srgb_and_roughness_is_linear_green_and_metal_blue() {
     let texture = model.texture(2, &PIXELS);
     let named = json!({"index": texture});
     let pbr = json!({"baseColorFactor": [1.0, 0.5, 1.0, 1.0], "baseColorTexture": named, "roughnessFactor": 0.5, "metallicRoughnessTexture": named});
-    model.square_of(json!({"pbrMetallicRoughness": pbr}));
+    square_of(&mut model, json!({"pbrMetallicRoughness": pbr}));
     let scene = scene(&model);
     let found = principled(&scene);
     let base = bitmap(&found.base_color).texels[0];
@@ -82,7 +82,7 @@ fn colours_are_srgb_and_roughness_is_linear_green_and_metal_blue() {
 fn a_band_that_is_the_same_everywhere_is_a_number() {
     let mut model = Model::default();
     let texture = model.texture(2, &[[9, 51, 0, 255], [200, 51, 0, 255]]);
-    model.square_of(json!({"pbrMetallicRoughness": {"metallicRoughnessTexture": {"index": texture}}}));
+    square_of(&mut model, json!({"pbrMetallicRoughness": {"metallicRoughnessTexture": {"index": texture}}}));
     let scene = scene(&model);
     assert!(principled(&scene).roughness.is(0.2) && principled(&scene).metallic.is(0.0));
 }
@@ -97,7 +97,7 @@ fn alpha_is_an_opacity_where_it_blends_and_all_or_nothing_where_it_is_cut_off() 
         if mode == "MASK" {
             material["alphaCutoff"] = json!(cutoff);
         }
-        model.square_of(material);
+        square_of(&mut model, material);
         let scene = scene(&model);
         match first(&scene) {
             Material::Mask { opacity, .. } => {
@@ -144,7 +144,7 @@ fn samplers_say_how_images_go_on() {
     model.add("samplers", json!({"magFilter": 9728, "wrapS": 33071, "wrapT": 33648}));
     let other = model.add("textures", json!({"source": 0, "sampler": 0}));
     for index in [texture, other] {
-        model.square_of(json!({"pbrMetallicRoughness": {"baseColorTexture": {"index": index}}}));
+        square_of(&mut model, json!({"pbrMetallicRoughness": {"baseColorTexture": {"index": index}}}));
     }
     let found = loaded(&model);
     let maps: Vec<_> = (0..2)
@@ -165,7 +165,7 @@ fn a_texture_transform_shows_the_quadrant_of_the_specification() {
     let texture = model.texture(2, &PIXELS);
     let transform = json!({"offset": [0.0, 1.0], "rotation": std::f32::consts::FRAC_PI_2, "scale": [0.5, 0.5]});
     let named = json!({"index": texture, "extensions": {"KHR_texture_transform": transform}});
-    model.square_of(json!({"pbrMetallicRoughness": {"baseColorTexture": named}}));
+    square_of(&mut model, json!({"pbrMetallicRoughness": {"baseColorTexture": named}}));
     let scene = scene(&model);
     let [[a, b, c], [d, e, f]] = bitmap(&principled(&scene).base_color).to_uv.0;
     let at = |u: f32, v: f32| (f64::from(a * u + b * v + c), f64::from(d * u + e * v + f));
@@ -186,7 +186,7 @@ fn emission_is_factor_times_strength_and_of_a_texture_the_mean() {
 
     let mut model = Model::default();
     let texture = model.texture(2, &[[255, 255, 0, 255], [255, 0, 0, 255]]);
-    model.square_of(json!({"emissiveFactor": [1, 1, 1], "emissiveTexture": {"index": texture}}));
+    square_of(&mut model, json!({"emissiveFactor": [1, 1, 1], "emissiveTexture": {"index": texture}}));
     let found = loaded(&model);
     let Some(ShapeLight::Area(radiance)) = &found.description.shapes[0].light else { panic!("dark") };
     assert_eq!(radiance.0, [1.0, 0.5, 0.0]);
@@ -237,7 +237,8 @@ fn textures_that_take_other_coordinates_are_listed() {
     let mut model = Model::default();
     let texture = model.texture(2, &PIXELS);
     let named = |set: u32| json!({"index": texture, "texCoord": set});
-    model.square_of(
+    square_of(
+        &mut model,
         json!({"emissiveTexture": named(0), "pbrMetallicRoughness": {"baseColorTexture": named(1), "metallicRoughnessTexture": named(0)}}),
     );
     let found = loaded(&model);
@@ -258,7 +259,7 @@ fn numbers_out_of_range_are_errors_that_name_the_material() {
         (json!({"extensions": {"KHR_materials_ior": {"ior": "glass"}}}), "KHR_materials_ior of material 0 cannot be read"),
     ] {
         let mut model = Model::default();
-        model.square_of(material);
+        square_of(&mut model, material);
         let error = error(&model);
         assert!(error.contains("m.gltf: ") && error.contains(word), "{error}");
     }

@@ -82,13 +82,6 @@ impl Model {
         index
     }
 
-    /// A node with a square that has this material.
-    pub fn square_of(&mut self, material: Value) -> usize {
-        let material = self.add("materials", material);
-        let mesh = self.square(json!({"material": material}));
-        self.node(json!({"mesh": mesh}))
-    }
-
     fn finished(&self, uri: Option<String>) -> Vec<u8> {
         let mut json = self.json.clone();
         if json["scenes"].is_null() {
