@@ -16,7 +16,7 @@ mod texture;
 mod uri;
 
 use std::{
-    collections::{BTreeSet, HashMap},
+    collections::{BTreeSet, HashMap, HashSet},
     fmt::Display,
     io::Read,
     path::Path,
@@ -42,6 +42,7 @@ use crate::{
 struct Reader<'a> {
     asset: &'a Asset,
     warnings: Vec<String>,
+    said: HashSet<String>,
     left_out: BTreeSet<String>,
     materials: Vec<Material>,
     /// By the number of the material, `None` for that of primitives without one.
@@ -62,6 +63,9 @@ pub(super) fn is_meant(path: &Path) -> bool {
     if ending.is_some_and(|ending| ending == "gltf" || ending == "glb") {
         return true;
     }
+    if !path.is_file() {
+        return false;
+    }
     let mut magic = [0; 4];
     let read = std::fs::File::open(path).and_then(|mut file| file.read_exact(&mut magic));
     read.is_ok() && magic == *b"glTF"
@@ -73,6 +77,7 @@ pub(super) fn load(path: &Path, defines: &[(String, String)]) -> Result<Loaded> 
     let mut reader = Reader {
         asset: &asset,
         warnings: Vec::new(),
+        said: HashSet::new(),
         left_out: BTreeSet::new(),
         materials: Vec::new(),
         surfaces: HashMap::new(),
@@ -123,7 +128,7 @@ impl Reader<'_> {
     /// Keeps a warning for the user; the same one once.
     fn warn(&mut self, warning: impl Display) {
         let warning = format!("{}: {warning}", self.asset.place());
-        if !self.warnings.contains(&warning) {
+        if self.said.insert(warning.clone()) {
             self.warnings.push(warning);
         }
     }

@@ -19,6 +19,9 @@ use crate::{
     scene::description::{Geometry, Group, GroupId, Instance, MaterialId, Mesh, Shape, ShapeLight},
 };
 
+/// The most places of all meshes together: one list of them may be named by many nodes.
+const MAX_PLACES: usize = 1 << 24;
+
 /// `EXT_mesh_gpu_instancing`
 #[derive(Deserialize)]
 struct Instancing {
@@ -48,7 +51,7 @@ impl Reader<'_> {
     /// The shapes of a scene. A mesh that stands in several places is kept once, but for what shines of it.
     pub(super) fn shapes(&mut self, nodes: &[Placed]) -> Result<Shapes> {
         let mut places: Vec<Vec<DAffine3>> = vec![Vec::new(); self.asset.root.meshes.len()];
-        let mut order = Vec::new();
+        let (mut order, mut count) = (Vec::new(), 0);
         for placed in nodes {
             let Some(mesh) = placed.node.mesh.map(|mesh| mesh.value()) else { continue };
             if placed.node.skin.is_some() {
@@ -58,7 +61,12 @@ impl Reader<'_> {
             if of_mesh.is_empty() {
                 order.push(mesh);
             }
-            for to_world in self.instances(placed)? {
+            let instances = self.instances(placed)?;
+            count += instances.len();
+            if count > MAX_PLACES {
+                return Err(self.asset.error("its meshes stand in more than 2^24 places", "split the model"));
+            }
+            for to_world in instances {
                 if !transform::is_invertible(&to_world) {
                     self.leave_out("what a scale of 0 flattens");
                 } else {
@@ -67,7 +75,6 @@ impl Reader<'_> {
             }
         }
         let mut all = Shapes::default();
-        order.dedup();
         for mesh in order {
             let places = std::mem::take(&mut places[mesh]);
             if !places.is_empty() {
