@@ -21,6 +21,8 @@ const MAX_SIZE: u32 = 1 << 15;
 const ASPECT: f64 = 16.0 / 9.0;
 /// Of a camera that the file does not have: its vertical field of view, in degrees.
 const FOV: f64 = 35.0;
+/// How much further away it is than it need be.
+const MARGIN: f64 = 1.1;
 
 impl Reader<'_> {
     /// The first camera among the nodes, or one that sees all of the scene, which lies within the bounds.
@@ -74,17 +76,21 @@ impl Reader<'_> {
         Sensor { kind, to_world, principal_point_offset: DVec2::ZERO, near_clip: None, far_clip: None, place }
     }
 
-    /// From the front, which is +z, a little from the right and from above.
+    /// From the front, which is +z, a little from the right and from above, as near as all corners of the box are seen.
     fn framing(&self, [min, max]: [DVec3; 2]) -> Sensor {
-        let (centre, radius) = (0.5 * (min + max), 0.5 * (max - min).length().max(1e-9));
         let back = DVec3::new(0.5, 0.35, 1.0).normalize();
-        let half = (0.5 * FOV).to_radians();
         let ahead = -back;
         let up = (DVec3::Y - ahead * ahead.dot(DVec3::Y)).normalize();
-        let matrix3 = DMat3::from_cols(up.cross(ahead), up, ahead);
-        let translation = centre + back * (radius / libm::sin(half));
-        let fov_x = 2.0 * libm::atan(libm::tan(half) * ASPECT).to_degrees();
-        self.looking(perspective(fov_x), DAffine3 { matrix3, translation })
+        let left = up.cross(ahead);
+        let high = libm::tan((0.5 * FOV).to_radians());
+        let wide = high * ASPECT;
+        let half = 0.5 * (max - min);
+        let corners = (0..8).map(|corner| half * DVec3::from_array([0, 1, 2].map(|axis| f64::from(2 * (corner >> axis & 1) - 1))));
+        let distances = corners.map(|corner| (corner.dot(left).abs() / wide).max(corner.dot(up).abs() / high) - corner.dot(ahead));
+        let distance = MARGIN * distances.fold(1e-9, f64::max);
+        let fov_x = 2.0 * libm::atan(wide).to_degrees();
+        let translation = 0.5 * (min + max) + back * distance;
+        self.looking(perspective(fov_x), DAffine3 { matrix3: DMat3::from_cols(left, up, ahead), translation })
     }
 
     /// A film of that aspect; its longer side is `$size`.

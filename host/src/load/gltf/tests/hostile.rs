@@ -75,7 +75,7 @@ fn what_is_named_and_is_not_there_is_told() {
         ("bufferViews", "buffer", json!(9), "buffer 9 is named"),
         ("bufferViews", "byteLength", json!(u64::MAX), "buffer view 0 is"),
         ("bufferViews", "byteOffset", json!(u64::MAX), "buffer view 0 is"),
-        ("buffers", "byteLength", json!(1 << 40), "buffer 0 has"),
+        ("buffers", "byteLength", json!(1_u64 << 40), "buffer 0 has"),
         ("buffers", "uri", json!("none.bin"), "none.bin cannot be read"),
         ("accessors", "count", json!(u64::MAX), "accessor 0, the positions, has 18446744073709551615 elements"),
         ("accessors", "count", json!(3), "triangle 1 (counted from 0) names vertices"),
