@@ -10,12 +10,15 @@ mod corpus;
 mod cost;
 mod depth;
 mod furnace;
+mod gltf;
 mod hard_cases;
 mod hostile;
 mod house;
 mod instances;
 mod invariance;
 mod loading;
+#[path = "../host/src/load/gltf/tests/model.rs"]
+mod model;
 mod peer;
 mod plans;
 mod presets;

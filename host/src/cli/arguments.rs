@@ -7,7 +7,7 @@ use clap::{Args, Parser, Subcommand};
 use super::plugin::templates;
 use crate::{plan::Named, render::Numbers, scene::description::Quantity};
 
-/// A bidirectional path tracer for Mitsuba 3 scenes.
+/// A bidirectional path tracer for Mitsuba 3 scenes and glTF.
 #[derive(Debug, Parser)]
 #[command(name = "bidir", version, about)]
 pub struct Arguments {
@@ -39,7 +39,7 @@ pub enum Command {
 /// Where a scene comes from.
 #[derive(Debug, Args)]
 pub struct SceneArguments {
-    /// Give a value to a $name of the scene
+    /// Give a value to a $name of the scene; of a glTF, to size or lights
     #[arg(long = "define", value_name = "NAME=VALUE", value_parser = definition)]
     pub defines: Vec<(String, String)>,
     /// The longest path, in segments, whatever the scene says; -1 is unlimited
@@ -56,7 +56,7 @@ pub struct SceneArguments {
 /// `bidir render`
 #[derive(Debug, Args)]
 pub struct Render {
-    /// A Mitsuba 3 scene
+    /// A Mitsuba 3 scene, or a glTF: .gltf or .glb
     pub scene: Option<PathBuf>,
     /// The image to write: .exr, .hdr or .png
     #[arg(short, long, value_name = "FILE")]
@@ -106,7 +106,7 @@ fn aov_names() -> clap::builder::PossibleValuesParser {
 /// `bidir explain`
 #[derive(Debug, Args)]
 pub struct Explain {
-    /// A Mitsuba 3 scene; without one, what this program reads is listed
+    /// A Mitsuba 3 scene, or a glTF; without one, what this program reads is listed
     pub scene: Option<PathBuf>,
     #[command(flatten)]
     pub from: SceneArguments,
@@ -118,7 +118,7 @@ pub struct Explain {
 /// `bidir techniques`
 #[derive(Debug, Args)]
 pub struct Techniques {
-    /// A Mitsuba 3 scene
+    /// A Mitsuba 3 scene, or a glTF: .gltf or .glb
     pub scene: PathBuf,
     /// The folder to write to
     #[arg(short, long, value_name = "DIR")]
@@ -160,7 +160,7 @@ pub struct Compare {
 /// `bidir cost`
 #[derive(Debug, Args)]
 pub struct Cost {
-    /// A Mitsuba 3 scene
+    /// A Mitsuba 3 scene, or a glTF: .gltf or .glb
     pub scene: PathBuf,
     /// The folder to write to; begun there before, it goes on
     #[arg(short, long, value_name = "DIR")]

@@ -102,6 +102,22 @@ pub fn decode(bytes: &[u8], name: &Path, encoding: Encoding, limits: &Limits) ->
     decoded.map_err(|thing| Error::in_file(name, format!("cannot be decoded ({thing})"), REMEDY))
 }
 
+/// Decodes a PNG or another image of whole numbers as [`decode`] does, and how opaque each pixel is: 0 … 1, or nothing where all are.
+///
+/// # Errors
+/// As [`decode`].
+pub fn decode_with_alpha(bytes: &[u8], name: &Path, encoding: Encoding, limits: &Limits) -> Result<(Packed, Vec<f32>)> {
+    let decoded = quietly(|| {
+        let decoded = whole_numbers(bytes, name, limits)?;
+        let alpha = match decoded.color().has_alpha() {
+            true => decoded.to_rgba16().pixels().map(|p| f32::from(p.0[3]) / 65535.0).collect(),
+            false => Vec::new(),
+        };
+        Ok((pack(decoded, encoding), alpha))
+    });
+    decoded.map_err(|thing| Error::in_file(name, format!("cannot be decoded ({thing})"), REMEDY))
+}
+
 const REMEDY: &str = "name an EXR, HDR, PNG, JPEG, BMP or TGA image";
 
 impl Pixels {
@@ -198,6 +214,11 @@ fn floats(samples: &FlatSamples) -> Vec<f32> {
 }
 
 fn other(bytes: &[u8], path: &Path, encoding: Encoding, limits: &Limits) -> std::result::Result<Packed, String> {
+    Ok(pack(whole_numbers(bytes, path, limits)?, encoding))
+}
+
+/// What the crate `image` reads.
+fn whole_numbers(bytes: &[u8], path: &Path, limits: &Limits) -> std::result::Result<DynamicImage, String> {
     let mut reader = image::ImageReader::new(Cursor::new(bytes));
     // TGA has no signature, so there the name decides.
     if let Ok(format) = image::ImageFormat::from_path(path) {
@@ -210,8 +231,12 @@ fn other(bytes: &[u8], path: &Path, encoding: Encoding, limits: &Limits) -> std:
     theirs.max_alloc = Some(limits.pixels * 16);
     reader.limits(theirs);
     let decoded = reader.decode().map_err(|e| e.to_string())?;
+    check_size(decoded.width().into(), decoded.height().into(), limits)?;
+    Ok(decoded)
+}
+
+fn pack(decoded: DynamicImage, encoding: Encoding) -> Packed {
     let (width, height) = (decoded.width(), decoded.height());
-    check_size(width.into(), height.into(), limits)?;
     let texels = match decoded {
         DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_) => Texels::floats(decoded.into_rgb32f().into_raw(), 3),
         DynamicImage::ImageLuma16(_) | DynamicImage::ImageLumaA16(_) => Texels::shorts(decoded.into_luma16().into_raw(), 1, encoding),
@@ -219,7 +244,7 @@ fn other(bytes: &[u8], path: &Path, encoding: Encoding, limits: &Limits) -> std:
         DynamicImage::ImageLuma8(_) | DynamicImage::ImageLumaA8(_) => Texels::bytes(decoded.into_luma8().into_raw(), 1, encoding),
         _ => Texels::bytes(decoded.into_rgb8().into_raw(), 3, encoding),
     };
-    Ok(Packed { width, height, texels })
+    Packed { width, height, texels }
 }
 
 impl Encoding {

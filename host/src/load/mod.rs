@@ -1,6 +1,7 @@
-//! Reading scenes: Mitsuba 3's XML into a [`Description`]. Nothing is built and nothing rendered here.
+//! Reading scenes: Mitsuba 3's XML, or glTF 2.0, into a [`Description`]. Nothing is built and nothing rendered here.
 //!
-//! What is written is either read as Mitsuba 3 reads it, or an error says where it stands, what it is and what to do instead.
+//! What is written in XML is either read as Mitsuba 3 reads it, or an error says where it stands, what it is and what to do instead. What a glTF
+//! holds beyond that is listed in a warning.
 
 mod ahead;
 mod attribute;
@@ -10,6 +11,7 @@ mod context;
 mod defines;
 mod emitter;
 mod film;
+pub mod gltf;
 mod group;
 mod ids;
 mod integrator;
@@ -46,8 +48,8 @@ pub struct Loaded {
     pub warnings: Vec<String>,
 }
 
-/// Reads the scene file `path`; `defines` are names and values for its `$name`s, and `library` is where plugins are that are not
-/// beside the scene.
+/// Reads the scene file `path`, XML unless it ends in `.gltf` or `.glb` or begins as the latter does; `defines` are names and values for
+/// its `$name`s, and `library` is where plugins are that are not beside the scene.
 ///
 /// # Errors
 /// If anything in the file, or in the files that it names, cannot be read exactly as it is meant.
@@ -60,6 +62,9 @@ pub fn load(path: &Path, defines: &[(String, String)], library: &Library) -> Res
 /// # Errors
 /// As [`load`].
 pub fn load_watched(path: &Path, defines: &[(String, String)], library: &Library, watch: Watch) -> Result<Loaded> {
+    if gltf::is_meant(path) {
+        return gltf::load(path, defines);
+    }
     let text = xml::read_text(path, None)?;
     read(&text, path, Some(path.parent().unwrap_or(Path::new(""))), defines, library, watch)
 }

@@ -136,7 +136,7 @@ fn bytes(path: &Path) -> Result<Vec<u8>> {
 
 /// Refuses vertices that are not there, and normals and coordinates that are not finite where a triangle has them; drops triangles without
 /// area, and those with a corner that is no point, and says how many.
-fn check(mesh: &mut Mesh, path: &Path) -> Result<usize> {
+pub(super) fn check(mesh: &mut Mesh, path: &Path) -> Result<usize> {
     let remedy = "mend the mesh, or export it again";
     let not_finite = |what: &str, at: usize| Error::in_file(path, format!("{what} of vertex {at} (counted from 0) is not finite"), remedy);
     let count = mesh.positions.len();
