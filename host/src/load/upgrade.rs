@@ -107,7 +107,7 @@ impl Upgrade {
             }
         }
         if tag == "texture" {
-            self.to_uv(element);
+            self.offset_and_scale(element);
             self.bitmap(element);
         }
         if let Some((_, old, new)) = TYPES.into_iter().find(|(of, old, _)| *of == tag && *old == kind) {
@@ -127,7 +127,7 @@ impl Upgrade {
     }
 
     /// As Mitsuba 3 has it, the offset is scaled too.
-    fn to_uv(&mut self, element: &mut Element) {
+    fn offset_and_scale(&mut self, element: &mut Element) {
         let taken = |name: &str| element.children.iter().position(|child| child.tag == "float" && child.attribute("name") == Some(name));
         let found = ["uoffset", "voffset", "uscale", "vscale"].map(taken);
         let Some(first) = found.into_iter().flatten().min() else { return };
