@@ -9,6 +9,7 @@ use bidir::{
     image::{Image, read},
     load,
     plugin::Library,
+    render,
     scene::Scene,
 };
 use bidir_kernel::Heuristic;
@@ -129,9 +130,12 @@ rows! {
     emitter_point
     emitter_spot
     film_hdrfilm
+    integrator_aov
     integrator_direct
     integrator_path
+    integrator_ptracer
     integrator_volpath
+    integrator_volpathmis
     rfilter_box
     rfilter_catmullrom
     rfilter_gaussian
@@ -155,6 +159,30 @@ rows! {
     texture_bitmap
     texture_checkerboard
     texture_mesh_attribute
+}
+
+/// Layers beside the picture, block by block: what the lens meets first has no noise but that of edges.
+#[test]
+fn layers_of_an_aov_are_mitsubas() {
+    let description = load::load(&folder().join("integrator_aov.xml"), &[], &Library::default()).expect("a scene").description;
+    let subject = Subject { scene: Scene::new(&description).expect("a scene"), description };
+    let all = read::picture(&folder().join("integrator_aov.layers.exr")).expect("a reference");
+    let aovs = &subject.description.integrator.aovs;
+    assert_eq!([all.width, all.height], [SIZE, aovs.len() as u32 * SIZE]);
+    let job = subject.job(subject.strategy(PATH, Heuristic::Balance), 1, 1);
+    for (number, aov) in aovs.iter().enumerate() {
+        let found = render::feature(&subject.scene, &subject.description.film, &job, aov.of, 64).expect("a layer");
+        for [left, top, width, height] in blocks() {
+            let mean = |image: &Image, down: u32, band: usize| {
+                let pixels = (0..width * height).map(|i| image.at(left + i % width, down + top + i / width)[band]);
+                f64::from(pixels.sum::<f32>()) / f64::from(width * height)
+            };
+            for band in 0..aov.channels().len() {
+                let (a, b) = (mean(&found, 0, band), mean(&all, number as u32 * SIZE, band));
+                assert!((a - b).abs() < 0.01 + 0.005 * b.abs(), "{} at {left}, {top}, band {band}: {a} for {b}", aov.of.name());
+            }
+        }
+    }
 }
 
 #[test]

@@ -472,3 +472,40 @@ fn a_plugin_that_breaks_off_when_it_is_loaded_is_bad_input() {
     fs::write(desk.path("trap.wasm"), wat::parse_str(module).expect("a module")).expect("a file");
     desk.refuses(&["plugin", "inspect", "trap.wasm"], &["trap.wasm", "bidir_abi"]);
 }
+
+/// The channels of an EXR and the sums of their values.
+fn channels(path: &Path) -> Vec<(String, f64)> {
+    use exr::prelude::{ReadChannels as _, ReadLayers as _};
+    let all = exr::prelude::read().no_deep_data().largest_resolution_level().all_channels().all_layers().all_attributes();
+    let image = all.from_file(path).expect("an EXR");
+    let channels = image.layer_data.iter().flat_map(|layer| &layer.channel_data.list);
+    channels.map(|one| (one.name.to_string(), one.sample_data.values_as_f32().map(f64::from).sum())).collect()
+}
+
+#[test]
+fn layers_stand_beside_the_picture() {
+    let desk = Desk::new();
+    let output = desk.run(&["render", "good.xml", "-o", "a.exr", "--spp", "4", "--quiet", "--integrator", "bdpt", "--aov", "all"]);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let found = channels(&desk.path("a.exr"));
+    let names: Vec<&str> = found.iter().map(|(name, _)| name.as_str()).collect();
+    for name in
+        ["R", "albedo.G", "N.X", "Ng.Z", "depth.Z", "P.Y", "uv.V", "shape_index.id", "prim_index.id", "material_index.id", "variance.B"]
+    {
+        assert!(names.contains(&name), "{name} is not among {names:?}");
+    }
+    let sum = |name: &str| found.iter().find(|(known, _)| known == name).map_or(0.0, |(_, sum)| *sum);
+    let techniques: f64 =
+        found.iter().filter(|(name, _)| name.starts_with("techniques.") && name.ends_with(".R")).map(|(_, sum)| sum).sum();
+    assert!((techniques / sum("R") - 1.0).abs() < 0.05, "{techniques} of {}", sum("R"));
+    assert!(sum("samples.count") > 0.0);
+
+    desk.refuses(&["render", "good.xml", "-o", "a.png", "--aov", "depth"], &["a.png", "only an EXR holds more than one layer"]);
+    let scene = fs::read_to_string(desk.path("good.xml")).expect("a scene");
+    let asked = r#"<integrator type="aov"><string name="aovs" value="dd:depth, nn:sh_normal"/><integrator type="path"/></integrator>"#;
+    let start = scene.find('>').expect("an element") + 1;
+    desk.scene("aov.xml", &[&scene[..start], asked, &scene[start..]].concat());
+    assert!(desk.run(&["render", "aov.xml", "-o", "b.exr", "--spp", "1", "--quiet"]).status.success());
+    let names: Vec<String> = channels(&desk.path("b.exr")).into_iter().map(|(name, _)| name).collect();
+    assert_eq!(names, ["B", "G", "R", "dd.T", "nn.X", "nn.Y", "nn.Z"]);
+}

@@ -39,7 +39,10 @@ fn main() -> ExitCode {
     let (triangles, textures, side) = (number("triangles", 5_000_000), number("textures", 200), number("side", 1024));
     let folder = tempfile::tempdir().expect("a folder");
     write_scene(folder.path(), triangles.div_ceil(2 * QUADS * QUADS), textures, side).expect("room for a scene");
-    println!("{triangles} triangles or a few more; {textures} textures of {:.1} MB together", f64::from(textures) * f64::from(side * side) * 3e-6);
+    println!(
+        "{triangles} triangles or a few more; {textures} textures of {:.1} MB together",
+        f64::from(textures) * f64::from(side * side) * 3e-6
+    );
     let before = Memory::now();
 
     let start = Instant::now();

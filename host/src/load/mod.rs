@@ -77,14 +77,7 @@ pub fn load_str(text: &str, name: &Path, base_dir: Option<&Path>, defines: &[(St
     read(text, name, base_dir, defines, library, &|_, _| {})
 }
 
-fn read(
-    text: &str,
-    name: &Path,
-    base_dir: Option<&Path>,
-    defines: &[(String, String)],
-    library: &Library,
-    watch: Watch,
-) -> Result<Loaded> {
+fn read(text: &str, name: &Path, base_dir: Option<&Path>, defines: &[(String, String)], library: &Library, watch: Watch) -> Result<Loaded> {
     let tree = xml::read(text, name, base_dir, defines)?;
     let ids = Ids::collect(&tree.root)?;
     let scene = Properties::read(&tree.root, &ids)?;

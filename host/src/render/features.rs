@@ -1,7 +1,8 @@
 //! What the lens meets first: layers beside the picture, for denoisers and compositors.
 
 use bidir_kernel::{
-    Bsdf as _, Camera as _, Carried, Contribution, Film as _, Ray, Real, Sampler, Scene as _, Segment, Spectrum, Technique, Vec2, Vec3, Walk,
+    Bsdf as _, Camera as _, Carried, Contribution, Film as _, Ray, Real, Sampler, Scene as _, Segment, Spectrum, Technique, Vec2, Vec3,
+    Walk,
 };
 
 use super::{
@@ -75,7 +76,12 @@ fn add(buffer: &mut TileBuffer, value: Spectrum) {
 /// The ray that the lens sees a place of the film by.
 fn ray(view: &View, raster: Vec2, lens: [Real; 2]) -> Ray {
     let seen = view.camera().look(raster, lens);
-    Ray { origin: seen.point.position + seen.direction * seen.near, direction: seen.direction, t_max: seen.far - seen.near, segment: Segment::Lens }
+    Ray {
+        origin: seen.point.position + seen.direction * seen.near,
+        direction: seen.direction,
+        t_max: seen.far - seen.near,
+        segment: Segment::Lens,
+    }
 }
 
 fn sampled(view: &View, ray: &Ray, quantity: Quantity, numbers: &mut impl Sampler) -> Spectrum {

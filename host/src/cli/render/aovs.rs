@@ -30,7 +30,11 @@ impl Aovs {
     pub fn new(description: &Description, names: &[String], output: &Path) -> Result<Self> {
         let exr = output.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("exr"));
         if !exr && !names.is_empty() {
-            return Err(Error::in_file(output, "only an EXR holds more than one layer", "give -o a name that ends in .exr, or leave --aov out"));
+            return Err(Error::in_file(
+                output,
+                "only an EXR holds more than one layer",
+                "give -o a name that ends in .exr, or leave --aov out",
+            ));
         }
         let mut all = if exr { description.integrator.aovs.clone() } else { Vec::new() };
         for quantity in Quantity::ALL {
@@ -51,7 +55,15 @@ impl Aovs {
     }
 
     /// Everything that was asked for, of a render of so many samples per pixel.
-    pub fn develop(&self, description: &Description, scene: &Scene, job: &Job, film: &Film, pyramid: Option<&Pyramid>, samples: u32) -> Result<Developed> {
+    pub fn develop(
+        &self,
+        description: &Description,
+        scene: &Scene,
+        job: &Job,
+        film: &Film,
+        pyramid: Option<&Pyramid>,
+        samples: u32,
+    ) -> Result<Developed> {
         let mut layers = Vec::new();
         for aov in &self.0 {
             let mut push = |name: String, image| layers.push((name, aov.channels(), image));
