@@ -44,15 +44,14 @@ impl Reader<'_> {
             return Err(asset.error("its meshes have more than 2^28 vertices and corners", "split the model"));
         }
         let normals = attribute(Semantic::Normals).map(|index| asset.floats::<3>(index, "normals")).transpose()?.unwrap_or_default();
-        let uvs = match surface.uv_set {
-            None => Vec::new(),
-            Some(set) => match attribute(Semantic::TexCoords(set)) {
-                Some(index) => asset.floats::<2>(index, "texture coordinates")?,
-                None => {
-                    self.warn(format_args!("{name} has textures and no TEXCOORD_{set}; it is taken as 0, 0 everywhere"));
-                    vec![[0.0; 2]; positions.len()]
-                }
-            },
+        // Kept without textures too, as from any mesh: what shines follows u.
+        let uvs = match (attribute(Semantic::TexCoords(surface.uv_set.unwrap_or(0))), surface.uv_set) {
+            (Some(index), _) => asset.floats::<2>(index, "texture coordinates")?,
+            (None, Some(set)) => {
+                self.warn(format_args!("{name} has textures and no TEXCOORD_{set}; it is taken as 0, 0 everywhere"));
+                vec![[0.0; 2]; positions.len()]
+            }
+            (None, None) => Vec::new(),
         };
         for (what, count) in [("normals", normals.len()), ("texture coordinates", uvs.len())] {
             if count != 0 && count != positions.len() {
