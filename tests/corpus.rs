@@ -62,6 +62,7 @@ fn every_scene_of_the_corpus_is_refused_or_traced() {
 fn every_mesh_of_the_corpus_is_refused_or_built() {
     replay("obj");
     replay("ply");
+    replay("serialized");
 }
 
 #[test]

@@ -170,8 +170,9 @@ fn layers_of_an_aov_are_mitsubas() {
     let aovs = &subject.description.integrator.aovs;
     assert_eq!([all.width, all.height], [SIZE, aovs.len() as u32 * SIZE]);
     let job = subject.job(subject.strategy(PATH, Heuristic::Balance), 1, 1);
-    for (number, aov) in aovs.iter().enumerate() {
-        let found = render::feature(&subject.scene, &subject.description.film, &job, aov.of, 64).expect("a layer");
+    let quantities: Vec<_> = aovs.iter().map(|aov| aov.of).collect();
+    let layers = render::features(&subject.scene, &subject.description.film, &job, &quantities, 64, &false.into()).expect("layers");
+    for (number, (aov, found)) in aovs.iter().zip(layers).enumerate() {
         for [left, top, width, height] in blocks() {
             let mean = |image: &Image, down: u32, band: usize| {
                 let pixels = (0..width * height).map(|i| image.at(left + i % width, down + top + i / width)[band]);

@@ -4,6 +4,7 @@ mod aovs;
 
 use std::{
     path::{Path, PathBuf},
+    sync::atomic::{AtomicBool, Ordering},
     time::{Duration, Instant},
 };
 
@@ -145,23 +146,23 @@ pub(super) fn run(arguments: &Render) -> Result<Outcome> {
         width: description.film.width,
         strictness: strictness(&arguments.from),
     };
-    let mut progress = progress(target, arguments.quiet);
+    let (mut progress, interrupt) = (progress(target, arguments.quiet), interrupt::flag());
     let report = |status: &Status| {
         let error = film.noise().map(|noise| noise.relmse);
         progress.update(status.samples, status.elapsed, error);
         error
     };
-    let (status, planned) = match given {
+    let (mut status, planned) = match given {
         Some(plan) => {
             let mut director = Given { plan, integrator: description.integrator.clone() };
             (
-                directed(&scene, &film, pyramid.as_ref(), &job, &mut director, report),
+                directed(&scene, &film, pyramid.as_ref(), &job, &mut director, &interrupt, report),
                 Planned { plan: director.plan, choice: None, elapsed: Duration::ZERO },
             )
         }
         None => {
             let mut director = Auto::new(&description, &Effects::of(&description, &scene));
-            let status = directed(&scene, &film, pyramid.as_ref(), &job, &mut director, report);
+            let status = directed(&scene, &film, pyramid.as_ref(), &job, &mut director, &interrupt, report);
             (status, Planned { plan: director.plan().clone(), choice: director.choice().cloned(), elapsed: director.elapsed })
         }
     };
@@ -169,7 +170,10 @@ pub(super) fn run(arguments: &Render) -> Result<Outcome> {
     seconds.plan = planned.elapsed.as_secs_f64();
     seconds.render = status.elapsed.saturating_sub(planned.elapsed).as_secs_f64();
 
-    let layers = aovs.develop(&description, &scene, &job, &film, pyramid.as_ref(), status.samples)?;
+    let layering = Instant::now();
+    let layers = aovs.develop(&description, &scene, &job, &film, pyramid.as_ref(), status.samples, &interrupt)?;
+    seconds.layers = layering.elapsed().as_secs_f64();
+    status.interrupted |= interrupt.load(Ordering::Relaxed);
     save(&output, &film, &layers, &status, job.seed)?;
     if film.refused() > 0 {
         eprintln!("warning: {} contributions were not finite and were refused", film.refused());
@@ -217,11 +221,12 @@ fn directed(
     pyramid: Option<&Pyramid>,
     job: &Job,
     director: &mut impl Director,
+    interrupt: &AtomicBool,
     report: impl FnMut(&Status) -> Option<f64>,
 ) -> Status {
     match pyramid {
-        Some(pyramid) => render::directed(scene, &Both::new(film, pyramid), job, director, &interrupt::flag(), report),
-        None => render::directed(scene, film, job, director, &interrupt::flag(), report),
+        Some(pyramid) => render::directed(scene, &Both::new(film, pyramid), job, director, interrupt, report),
+        None => render::directed(scene, film, job, director, interrupt, report),
     }
 }
 

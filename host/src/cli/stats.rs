@@ -67,6 +67,8 @@ pub struct Seconds {
     pub plan: f64,
     /// Sampling.
     pub render: f64,
+    /// What the lens meets first, for layers beside the picture.
+    pub layers: f64,
     /// Everything.
     pub total: f64,
 }

@@ -30,6 +30,8 @@ impl Packed {
 pub struct Texels {
     bands: usize,
     values: Values,
+    /// Once it was asked for.
+    mean: OnceLock<Spectrum>,
 }
 
 #[derive(Clone, Debug)]
@@ -46,23 +48,38 @@ impl Texels {
     /// Whole numbers of 8 bits; `bands` is 1 or 3, and the bands of a pixel stand beside each other.
     pub fn bytes(values: Vec<u8>, bands: usize, encoding: Encoding) -> Self {
         static TABLES: [OnceLock<Box<[f32]>>; 2] = [const { OnceLock::new() }; 2];
-        Self { bands, values: Values::Bytes(values, table(&TABLES, encoding, 255)) }
+        Self::new(bands, Values::Bytes(values, table(&TABLES, encoding, 255)))
     }
 
     /// Whole numbers of 16 bits.
     pub fn shorts(values: Vec<u16>, bands: usize, encoding: Encoding) -> Self {
         static TABLES: [OnceLock<Box<[f32]>>; 2] = [const { OnceLock::new() }; 2];
-        Self { bands, values: Values::Shorts(values, table(&TABLES, encoding, 65535)) }
+        Self::new(bands, Values::Shorts(values, table(&TABLES, encoding, 65535)))
     }
 
     /// Half floats, always linear.
     pub fn halves(values: Vec<f16>, bands: usize) -> Self {
-        Self { bands, values: Values::Halves(values) }
+        Self::new(bands, Values::Halves(values))
     }
 
     /// Floats, always linear.
     pub fn floats(values: Vec<f32>, bands: usize) -> Self {
-        Self { bands, values: Values::Floats(values) }
+        Self::new(bands, Values::Floats(values))
+    }
+
+    fn new(bands: usize, values: Values) -> Self {
+        Self { bands, values, mean: OnceLock::new() }
+    }
+
+    /// Of all pixels; black where there is none.
+    pub fn mean(&self) -> Spectrum {
+        *self.mean.get_or_init(|| {
+            let mut sums = [0.0; 3];
+            for pixel in self.iter() {
+                sums.iter_mut().zip(pixel.0).for_each(|(sum, band)| *sum += f64::from(band));
+            }
+            Spectrum(sums.map(|sum| (sum / self.len().max(1) as f64) as f32))
+        })
     }
 
     /// How many pixels.

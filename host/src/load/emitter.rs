@@ -44,7 +44,7 @@ fn built_in_area(context: &mut Context, of: Properties, element: &Element) -> Re
         return Err(Error::at(&element.place, thing, "only area lights are on shapes; move it out of the shape"));
     }
     let radiance = match of.any("radiance") {
-        Some(Value::Object(_)) => texture::parameter(context, &of, "radiance", 1.0, texture::Range::NOT_NEGATIVE)?,
+        Some(Value::Object(_)) => texture::parameter(context, &of, "radiance", 1.0, texture::Range::LIGHT)?,
         _ => Texture::Constant(of.radiance("radiance")?),
     };
     finish(of)?;

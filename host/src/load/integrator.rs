@@ -53,11 +53,11 @@ fn around(context: &mut Context, of: Properties) -> Result<Integrator> {
     Ok(Integrator { aovs, ..integrator(context, inner)? })
 }
 
-/// `name:quantity` and so on, with commas between.
+/// `name:quantity` and so on, with commas or blanks between.
 fn aovs(of: &Properties) -> Result<Vec<Aov>> {
     let Some(written) = of.text("aovs")? else { return Ok(Vec::new()) };
     let mut found: Vec<Aov> = Vec::new();
-    for item in written.split(',').map(str::trim).filter(|item| !item.is_empty()) {
+    for item in written.split(|c: char| c == ',' || c.is_whitespace()).filter(|item| !item.is_empty()) {
         let Some((name, quantity)) = item.split_once(':') else {
             return Err(of.error("aovs", format!("has \"{item}\""), "write a layer's name and what it holds, such as nn:sh_normal"));
         };
@@ -66,11 +66,13 @@ fn aovs(of: &Properties) -> Result<Vec<Aov>> {
             let remedy = format!("{}it can be {}", did_you_mean(quantity, &known), list(&known));
             return Err(of.error("aovs", format!("asks for \"{quantity}\""), remedy));
         };
-        if !name.chars().all(|c| c.is_ascii_graphic()) || name.is_empty() || found.iter().any(|one| one.name == name) {
+        let aov = Aov { name: name.to_owned(), of: quantity, words: Words::Mitsuba };
+        let taken = |one: &Aov| one.name == name && one.channels().iter().any(|channel| aov.channels().contains(channel));
+        if !name.chars().all(|c| c.is_ascii_graphic()) || name.is_empty() || found.iter().any(taken) {
             let remedy = "give each layer a name of its own, of letters and digits";
             return Err(of.error("aovs", format!("names a layer \"{name}\""), remedy));
         }
-        found.push(Aov { name: name.to_owned(), of: quantity, words: Words::Mitsuba });
+        found.push(aov);
     }
     Ok(found)
 }

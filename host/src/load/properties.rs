@@ -33,6 +33,9 @@ pub(super) const OBJECTS: [&str; 14] = [
     "volume",
     "subsurface",
 ];
+/// Light alike at every wavelength, in linear sRGB: what a `<spectrum>` of 1 is where it is light and no reflectance.
+const EQUAL_ENERGY: [f32; BANDS] = [1.204_794, 0.948_291, 0.908_916];
+
 const PLAIN: [&str; 9] = ["float", "integer", "boolean", "string", "rgb", "spectrum", "point", "vector", "transform"];
 
 /// Elements of Mitsuba before 3, and what to write today.
@@ -225,7 +228,10 @@ impl<'s> Properties<'s> {
 
     /// How much light something gives; 1 in every band where it is not written.
     pub(super) fn radiance(&self, name: &str) -> Result<Spectrum> {
-        let color = self.color(name)?.unwrap_or(Spectrum::ONE);
+        let mut color = self.color(name)?.unwrap_or(Spectrum::ONE);
+        if self.entries.iter().any(|property| property.name == Some(name) && property.element.tag == "spectrum") {
+            (0..BANDS).for_each(|band| color.0[band] *= EQUAL_ENERGY[band]);
+        }
         if color.0.iter().any(|v| *v < 0.0) {
             return Err(self.error(name, "is negative", "light cannot be less than 0"));
         }

@@ -351,6 +351,14 @@ fn lights_have_mitsubas_defaults() {
     assert!(matches!(scene.shapes[0].light, Some(ShapeLight::Area(Texture::Constant(Spectrum::ONE)))));
 }
 
+/// Mitsuba 3.9.1 gives 2.40959, 1.89658 and 1.81783.
+#[test]
+fn light_alike_at_every_wavelength_is_the_white_of_equal_energy() {
+    let scene = scene("<emitter type=\"point\"><spectrum name=\"intensity\" value=\"2\"/></emitter>");
+    let EmitterKind::Point { intensity, .. } = scene.emitters[0].kind else { panic!("no point") };
+    assert!(intensity.0.iter().zip([2.40959, 1.89658, 1.81783]).all(|(a, b)| (a - b).abs() < 1e-4), "{intensity:?}");
+}
+
 #[test]
 fn lights_that_make_no_sense_are_refused() {
     for (content, thing) in [

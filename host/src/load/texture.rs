@@ -29,6 +29,8 @@ pub(super) struct Range {
 impl Range {
     /// What scales light must not add any.
     pub(super) const FRACTION: Self = Self { min: 0.0, max: 1.0 };
+    /// As much light as a number may say.
+    pub(super) const LIGHT: Self = Self { min: 0.0, max: 1e30 };
     /// 0 or more.
     pub(super) const NOT_NEGATIVE: Self = Self { min: 0.0, max: f32::MAX };
     /// Whatever is a number.

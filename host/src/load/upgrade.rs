@@ -8,11 +8,21 @@ use super::{catalog, properties::OBJECTS, xml::Element};
 use crate::error::{Place, Result};
 
 /// Types by another name: those that differ in how the picture is written, or in which numbers are drawn.
-const TYPES: [(&str, &str, &str); 4] = [
+const TYPES: [(&str, &str, &str); 13] = [
     ("film", "ldrfilm", "hdrfilm"),
     ("sampler", "halton", "independent"),
     ("sampler", "hammersley", "independent"),
     ("sampler", "sobol", "independent"),
+    // Of integrators the depths count, and which techniques run is not theirs to say.
+    ("integrator", "bdpt", "path"),
+    ("integrator", "mlt", "path"),
+    ("integrator", "pssmlt", "path"),
+    ("integrator", "erpt", "path"),
+    ("integrator", "ppm", "path"),
+    ("integrator", "sppm", "path"),
+    ("integrator", "photonmapper", "path"),
+    ("integrator", "vpl", "path"),
+    ("integrator", "volpath_simple", "volpath"),
 ];
 
 /// Parameters, spelled as today, that change no image here, by element and type; "" is any.
@@ -113,7 +123,22 @@ impl Upgrade {
         if let Some((_, old, new)) = TYPES.into_iter().find(|(of, old, _)| *of == tag && *old == kind) {
             self.renamed(old, new, &element.place);
             set(element, "type", new.into());
+            if tag == "integrator" {
+                self.keep_depths(element);
+            }
         }
+    }
+
+    /// What else an integrator says is about techniques.
+    fn keep_depths(&mut self, element: &mut Element) {
+        element.children.retain(|child| {
+            let name = child.attribute("name").unwrap_or("");
+            let kept = ["max_depth", "rr_depth", "hide_emitters"].contains(&underscored(name).as_str());
+            if !kept {
+                note(&mut self.left_out, name, "", &child.place);
+            }
+            kept
+        });
     }
 
     fn leave_out(&mut self, element: &mut Element, tag: &str, kind: &str) {
@@ -128,7 +153,12 @@ impl Upgrade {
 
     /// As Mitsuba 3 has it, the offset is scaled too.
     fn offset_and_scale(&mut self, element: &mut Element) {
-        let taken = |name: &str| element.children.iter().position(|child| child.tag == "float" && child.attribute("name") == Some(name));
+        let taken = |name: &str| {
+            element
+                .children
+                .iter()
+                .position(|child| ["float", "integer"].contains(&child.tag.as_str()) && child.attribute("name") == Some(name))
+        };
         let found = ["uoffset", "voffset", "uscale", "vscale"].map(taken);
         let Some(first) = found.into_iter().flatten().min() else { return };
         let value = |at: Option<usize>| at.and_then(|at| element.children[at].attribute("value")).map(str::to_owned);

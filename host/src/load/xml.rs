@@ -274,6 +274,10 @@ fn upgrade_of(root: roxmltree::Node, place: &Place) -> Result<Option<Upgrade>> {
     match parts.as_deref() {
         Some([2 | 3, _, _]) => Ok(None),
         Some([0 | 1, _, _]) => Ok(Some(Upgrade::new(place.clone(), version))),
+        Some([major, minor]) => {
+            let thing = format!("version \"{version}\" of the scene language is not supported: it has three numbers");
+            Err(Error::at(place, thing, format!("write {major}.{minor}.0")))
+        }
         _ => Err(Error::at(place, format!("version \"{version}\" of the scene language is not supported"), remedy)),
     }
 }

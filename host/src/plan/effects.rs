@@ -8,7 +8,7 @@ use crate::plugin::Roster;
 use crate::scene::{
     Scene,
     description::{Description, Geometry, Material, MaterialId, SensorKind, Texture},
-    lights::Seat,
+    lights::{ProfileSource, Seat},
     surface::Finish,
 };
 
@@ -74,6 +74,7 @@ impl Effects {
     pub fn of(description: &Description, scene: &Scene) -> Self {
         let mut effects = Self { hidden_emitters: description.integrator.hide_emitters, ..Self::default() };
         for light in scene.all_lights().sources() {
+            effects.textures |= matches!(light.profile, ProfileSource::Textured(_));
             match light.seat {
                 Seat::Shape(_) => effects.area_lights = true,
                 Seat::Environment { .. } => effects.environment = true,

@@ -1,5 +1,10 @@
 //! What the lens meets first: layers beside the picture, for denoisers and compositors.
 
+use std::sync::{
+    Mutex, PoisonError,
+    atomic::{AtomicBool, Ordering},
+};
+
 use bidir_kernel::{
     Bsdf as _, Camera as _, Carried, Contribution, Film as _, Ray, Real, Sampler, Scene as _, Segment, Spectrum, Technique, Vec2, Vec3,
     Walk,
@@ -27,81 +32,141 @@ const MOST_SAMPLES: u32 = 64;
 /// How often each sample asks the surface what it gives back.
 const ALBEDO_SAMPLES: u32 = 4;
 
-/// A layer of what the lens meets first, by so many of the render's samples per pixel: through the film's own filter, but for numbers of
-/// shapes and the like, which nothing lies between. Black for what is not met, and for quantities that are not of the first surface.
+/// Layers of what the lens meets first, in that order, by so many of the render's samples per pixel: through the film's own filter, but for
+/// numbers of shapes and the like, which nothing lies between. Black for what is not met, and for quantities that are not of the first
+/// surface. Raising `interrupt` ends them where they are.
 ///
 /// # Errors
-/// If the film cannot be made.
-pub fn feature(scene: &Scene, settings: &FilmSettings, job: &Job, quantity: Quantity, samples: u32) -> Result<Image> {
-    if !quantity.is_filtered() {
-        return Ok(numbers(scene, settings, quantity));
+/// If a film cannot be made.
+pub fn features(
+    scene: &Scene,
+    settings: &FilmSettings,
+    job: &Job,
+    quantities: &[Quantity],
+    samples: u32,
+    interrupt: &AtomicBool,
+) -> Result<Vec<Image>> {
+    let filtered: Vec<Quantity> = quantities.iter().copied().filter(|quantity| quantity.is_filtered()).collect();
+    let films = filtered.iter().map(|_| Film::new(settings)).collect::<Result<Vec<_>>>()?;
+    let (samples, turn) = (samples.clamp(1, MOST_SAMPLES), Mutex::new(()));
+    let pass = Pass { scene, job, films: &films, filtered: &filtered, samples, turn: &turn, interrupt };
+    if !films.is_empty() {
+        std::thread::scope(|scope| {
+            for _ in 0..job.threads.max(1) {
+                scope.spawn(|| match job.numbers {
+                    Numbers::Sobol => pass.expose::<Sobol>(),
+                    Numbers::Independent => pass.expose::<Apart>(),
+                });
+            }
+        });
     }
-    let film = Film::new(settings)?;
-    let samples = samples.clamp(1, MOST_SAMPLES);
-    std::thread::scope(|scope| {
-        for _ in 0..job.threads.max(1) {
-            scope.spawn(|| match job.numbers {
-                Numbers::Sobol => expose::<Sobol>(scene, &film, job, quantity, samples),
-                Numbers::Independent => expose::<Apart>(scene, &film, job, quantity, samples),
-            });
+    let numbers = if filtered.len() < quantities.len() { numbers(scene, settings, job, interrupt) } else { Vec::new() };
+    let (mut films, crop) = (films.iter(), settings.crop);
+    let image = |quantity: &Quantity| match quantity {
+        filtered if filtered.is_filtered() => films.next().map_or_else(|| Image::black(crop.width, crop.height), Film::develop),
+        other => {
+            let place = [Quantity::ShapeIndex, Quantity::PrimIndex, Quantity::MaterialIndex].iter().position(|one| one == other);
+            let pixels = numbers.iter().map(|numbers| [place.map_or(0.0, |place| numbers[place]); 3]).collect();
+            Image { width: crop.width, height: crop.height, pixels }
         }
-    });
-    Ok(film.develop())
+    };
+    Ok(quantities.iter().map(image).collect())
 }
 
-/// One thread's share.
-fn expose<N: Source>(scene: &Scene, film: &Film, job: &Job, quantity: Quantity, samples: u32) {
-    let view = View::new(scene, Strictness::Lenient);
-    while let Some(mut buffer) = film.claim(samples) {
-        let unit = buffer.unit();
-        let source = N::new(job.seed, unit.sample);
-        for (x, y) in film.pixels(&unit) {
-            let mut numbers = source.pixel(u64::from(y) * u64::from(job.width) + u64::from(x));
-            numbers.seek(Walk::Camera, 0);
-            let [dx, dy] = numbers.next_pair();
-            let raster = Vec2::new(x as Real + dx, y as Real + dy);
-            let ray = ray(&view, raster, numbers.next_pair());
-            buffer.begin(raster);
-            add(&mut buffer, sampled(&view, &ray, quantity, &mut numbers));
-            buffer.end();
+/// One pass over what is filtered: every ray is cast once, and told to a film for each quantity.
+struct Pass<'a> {
+    scene: &'a Scene,
+    job: &'a Job,
+    films: &'a [Film],
+    filtered: &'a [Quantity],
+    samples: u32,
+    /// All films are claimed from by one thread at a time, so that their units stay the same.
+    turn: &'a Mutex<()>,
+    interrupt: &'a AtomicBool,
+}
+
+impl Pass<'_> {
+    fn claim(&self) -> Option<Vec<TileBuffer>> {
+        if self.interrupt.load(Ordering::Relaxed) {
+            return None;
         }
-        film.commit(buffer);
+        let _turn = self.turn.lock().unwrap_or_else(PoisonError::into_inner);
+        self.films.iter().map(|film| film.claim(self.samples)).collect()
+    }
+
+    /// One thread's share.
+    fn expose<N: Source>(&self) {
+        let view = View::new(self.scene, Strictness::Lenient);
+        while let Some(mut buffers) = self.claim() {
+            let Some(unit) = buffers.first().map(TileBuffer::unit) else { return };
+            let source = N::new(self.job.seed, unit.sample);
+            for (x, y) in self.films[0].pixels(&unit) {
+                let mut numbers = source.pixel(u64::from(y) * u64::from(self.job.width) + u64::from(x));
+                numbers.seek(Walk::Camera, 0);
+                let [dx, dy] = numbers.next_pair();
+                let raster = Vec2::new(x as Real + dx, y as Real + dy);
+                let (lens, ray) = ray(&view, raster, numbers.next_pair());
+                let met = self.scene.first_met(&ray);
+                for (buffer, quantity) in buffers.iter_mut().zip(self.filtered) {
+                    let value = match (quantity, &met) {
+                        (_, None) => Spectrum::BLACK,
+                        (Quantity::Albedo, Some(_)) => albedo(&view, &ray, &mut numbers),
+                        (_, Some(met)) => Spectrum(first(self.scene, lens, met, *quantity)),
+                    };
+                    buffer.begin(raster);
+                    buffer.add(Contribution { value, weight: 1.0, technique: Technique { s: 0, t: 2 } });
+                    buffer.end();
+                }
+            }
+            self.films.iter().zip(buffers).for_each(|(film, buffer)| film.commit(buffer));
+        }
     }
 }
 
-fn add(buffer: &mut TileBuffer, value: Spectrum) {
-    buffer.add(Contribution { value, weight: 1.0, technique: Technique { s: 0, t: 2 } });
-}
-
-/// The ray that the lens sees a place of the film by.
-fn ray(view: &View, raster: Vec2, lens: [Real; 2]) -> Ray {
+/// Where the lens is that sees a place of the film, and the ray by which it does.
+fn ray(view: &View, raster: Vec2, lens: [Real; 2]) -> (Vec3, Ray) {
     let seen = view.camera().look(raster, lens);
-    Ray {
-        origin: seen.point.position + seen.direction * seen.near,
-        direction: seen.direction,
-        t_max: seen.far - seen.near,
-        segment: Segment::Lens,
-    }
+    let origin = seen.point.position + seen.direction * seen.near;
+    (seen.point.position, Ray { origin, direction: seen.direction, t_max: seen.far - seen.near, segment: Segment::Lens })
 }
 
-fn sampled(view: &View, ray: &Ray, quantity: Quantity, numbers: &mut impl Sampler) -> Spectrum {
-    if quantity == Quantity::Albedo {
-        return albedo(view, ray, numbers);
-    }
-    let scene = view.scene();
-    scene.first_met(ray).map_or(Spectrum::BLACK, |met| Spectrum(first(scene, ray, &met, quantity)))
-}
-
-fn first(scene: &Scene, ray: &Ray, met: &Met, quantity: Quantity) -> [Real; 3] {
+fn first(scene: &Scene, lens: Vec3, met: &Met, quantity: Quantity) -> [Real; 3] {
     let of = |v: Vec3| [v.x, v.y, v.z];
     match quantity {
         Quantity::ShadingNormal => of(met.point.frame.z),
         Quantity::GeometricNormal => of(met.point.normal),
-        Quantity::Depth => [(met.point.position - ray.origin).length(), 0.0, 0.0],
+        Quantity::Depth => [(met.point.position - lens).length(), 0.0, 0.0],
         Quantity::Position => of((met.point.position.as_dvec3() + scene.origin()).as_vec3()),
         Quantity::Uv => [met.point.uv.x, met.point.uv.y, 0.0],
         _ => [0.0; 3],
     }
+}
+
+/// The numbers of shape, triangle and material behind the middle of each pixel, row by row; −1 where nothing is.
+fn numbers(scene: &Scene, settings: &FilmSettings, job: &Job, interrupt: &AtomicBool) -> Vec<[f32; 3]> {
+    let crop = settings.crop;
+    let (width, rows) = (crop.width as usize, crop.height.div_ceil(job.threads.max(1) as u32) as usize);
+    let mut all = vec![[-1.0; 3]; width * crop.height as usize];
+    std::thread::scope(|scope| {
+        for (part, pixels) in all.chunks_mut(width * rows).enumerate() {
+            scope.spawn(move || {
+                let view = View::new(scene, Strictness::Lenient);
+                for (row, pixels) in pixels.chunks_mut(width).enumerate() {
+                    if interrupt.load(Ordering::Relaxed) {
+                        return;
+                    }
+                    let y = crop.y as usize + part * rows + row;
+                    for (column, pixel) in pixels.iter_mut().enumerate() {
+                        let middle = Vec2::new((crop.x as usize + column) as Real + 0.5, y as Real + 0.5);
+                        if let Some(met) = scene.first_met(&ray(&view, middle, [0.5; 2]).1) {
+                            *pixel = [met.shape, met.triangle, met.material].map(|number| number as f32);
+                        }
+                    }
+                }
+            });
+        }
+    });
+    all
 }
 
 /// f |cos| / p, on average over what the surface samples itself: its directional albedo.
@@ -119,23 +184,6 @@ fn albedo(view: &View, ray: &Ray, numbers: &mut impl Sampler) -> Spectrum {
         }
     }
     sum * (1.0 / ALBEDO_SAMPLES as Real)
-}
-
-/// Numbers of what lies behind the middles of pixels.
-fn numbers(scene: &Scene, settings: &FilmSettings, quantity: Quantity) -> Image {
-    let (view, crop) = (View::new(scene, Strictness::Lenient), settings.crop);
-    let mut image = Image::black(crop.width, crop.height);
-    for (i, pixel) in image.pixels.iter_mut().enumerate() {
-        let [x, y] = [i as u32 % crop.width + crop.x, i as u32 / crop.width + crop.y].map(|v| v as Real + 0.5);
-        let met = scene.first_met(&ray(&view, Vec2::new(x, y), [0.5; 2]));
-        let number = |met: Met| match quantity {
-            Quantity::ShapeIndex => met.shape,
-            Quantity::PrimIndex => met.triangle,
-            _ => met.material,
-        };
-        *pixel = [met.map_or(-1.0, |met| number(met) as f32); 3];
-    }
-    image
 }
 
 #[cfg(test)]
@@ -180,7 +228,7 @@ mod tests {
     /// What is told of the wall, of the mirror, and of the sky.
     fn told(quantity: Quantity) -> [[f32; 3]; 3] {
         let (description, scene, job) = scene();
-        let image = feature(&scene, &description.film, &job, quantity, 16).unwrap();
+        let image = features(&scene, &description.film, &job, &[quantity], 16, &AtomicBool::new(false)).unwrap().remove(0);
         // The camera looks along −z, so that x grows to the right.
         [image.at(1, 6), image.at(6, 6), image.at(4, 1)]
     }

@@ -23,7 +23,7 @@ use crate::{
 };
 
 pub use director::{Always, Auto, Director, Given, Leg};
-pub use features::feature;
+pub use features::features;
 pub use numbers::{Numbers, Scrambled, Sobol, Source};
 pub use passes::pass_end;
 pub(crate) use pilot::{Nobody, scattered};

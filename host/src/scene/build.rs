@@ -182,7 +182,7 @@ impl Builder<'_> {
     fn light(&mut self, light: &ShapeLight, extent: LightExtent) -> LightId {
         let profile = match light {
             ShapeLight::Area(Texture::Constant(radiance)) => ProfileSource::Area(standard::Area { radiance: *radiance }),
-            ShapeLight::Area(radiance) => ProfileSource::Textured(TexturedArea::new(radiance.clone())),
+            ShapeLight::Area(radiance) => ProfileSource::Textured(TexturedArea::new(radiance.clone(), &extent)),
             ShapeLight::Plugin(shader) => self.profile(shader),
         };
         self.sources.push((Seat::Shape(extent), profile));

@@ -90,9 +90,10 @@ pub struct TexturedArea {
 }
 
 impl TexturedArea {
-    /// With a radiance in W/(m² sr).
-    pub fn new(radiance: Texture) -> Self {
-        Self { cells: Cells::of(&radiance), radiance }
+    /// With a radiance in W/(m² sr), on such a shape.
+    pub fn new(radiance: Texture, extent: &LightExtent) -> Self {
+        let rectangle = matches!(extent, LightExtent::Parallelogram(_));
+        Self { cells: rectangle.then(|| Cells::of(&radiance)).flatten(), radiance }
     }
 }
 

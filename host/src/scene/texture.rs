@@ -73,13 +73,7 @@ impl Texture {
     pub fn mean(&self) -> Spectrum {
         match self {
             Self::Constant(value) => *value,
-            Self::Bitmap(bitmap) => {
-                let mut sums = [0.0; 3];
-                for texel in bitmap.texels.iter() {
-                    sums.iter_mut().zip(texel.0).for_each(|(sum, band)| *sum += f64::from(band));
-                }
-                Spectrum(sums.map(|sum| (sum / bitmap.texels.len().max(1) as f64) as Real))
-            }
+            Self::Bitmap(bitmap) => bitmap.texels.mean(),
             Self::Checkerboard { color0, color1, .. } => (*color0 + *color1) * 0.5,
             Self::Attribute { mesh, index, scale } => {
                 let values = mesh.attributes.get(*index).map_or(&[][..], |attribute| &attribute.values);

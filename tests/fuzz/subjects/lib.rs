@@ -9,7 +9,7 @@ mod scene;
 mod trace;
 
 pub use image::{exr, hdr, png};
-pub use mesh::{obj, ply};
+pub use mesh::{obj, ply, serialized};
 pub use plugin::{manifest, module};
 pub use scene::scene_xml;
 
@@ -19,10 +19,11 @@ use bidir::error::Error;
 pub type Target = (&'static str, fn(&[u8]));
 
 /// Every target.
-pub const TARGETS: [Target; 8] = [
+pub const TARGETS: [Target; 9] = [
     ("scene_xml", scene_xml),
     ("obj", obj),
     ("ply", ply),
+    ("serialized", serialized),
     ("exr", exr),
     ("hdr", hdr),
     ("png", png),

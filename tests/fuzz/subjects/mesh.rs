@@ -32,6 +32,15 @@ pub fn ply(data: &[u8]) {
     mesh(data, Format::Ply);
 }
 
+/// Mitsuba's own meshes, which are packed.
+pub fn serialized(data: &[u8]) {
+    let index = u32::from(data.last().is_some_and(|byte| byte % 2 == 1));
+    mesh(data, Format::Serialized { index });
+}
+
+/// What a byte of a packed file may become.
+const UNPACKED: usize = 256;
+
 /// A mesh is refused with a remedy, or has finite vertices and corners that are there, is no larger than its file, and can be lit and hit.
 fn mesh(data: &[u8], format: Format) {
     let Parsed { mesh, dropped, .. } = match parse(data, format, Path::new("fuzz.mesh")) {
@@ -40,7 +49,8 @@ fn mesh(data: &[u8], format: Format) {
     };
     let count = mesh.positions.len();
     assert!(!mesh.triangles.is_empty());
-    assert!(count <= data.len() && mesh.triangles.len() + dropped <= data.len(), "the mesh is larger than its file");
+    let most = data.len() * if let Format::Serialized { .. } = format { UNPACKED } else { 1 };
+    assert!(count <= most && mesh.triangles.len() + dropped <= most, "the mesh is larger than its file");
     assert!(mesh.positions.as_flattened().iter().all(|v| v.abs() <= 1e30));
     assert!(mesh.normals.as_flattened().iter().chain(mesh.uvs.as_flattened()).all(|v| v.is_finite()));
     assert!([0, count].contains(&mesh.normals.len()) && [0, count].contains(&mesh.uvs.len()));

@@ -2,7 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use crate::load::catalog::{Entry, entries};
+use crate::load::{
+    catalog::{Entry, entries},
+    gltf::extension::{EXTENSIONS, Support},
+};
 
 /// Of one element: the types that are read, and those that are not, each with what to do instead.
 #[derive(Clone, Debug, Default, PartialEq, Eq, serde::Serialize)]
@@ -47,6 +50,10 @@ pub(super) fn list() -> String {
             lines.push(format!("  {tag:<11} {}: {instead}", names.join(", ")));
         }
     }
+    let read = EXTENSIONS.iter().filter(|(_, support)| !matches!(support, Support::LeftOut(_))).map(|(name, _)| *name);
+    let heading = "It reads glTF 2.0 too (.gltf, .glb), with these extensions; what is left out is listed where it is met:";
+    lines.extend([String::new(), heading.to_owned(), String::new()]);
+    lines.extend(read.map(|name| format!("  {name}")));
     lines.extend([String::new(), "Anything else is an error that says where it stands and what there is.".to_owned()]);
     lines.join("\n")
 }

@@ -1,6 +1,6 @@
 //! Layers beside the picture.
 
-use std::path::Path;
+use std::{path::Path, sync::atomic::AtomicBool};
 
 use bidir_kernel::Technique;
 
@@ -9,7 +9,7 @@ use crate::{
     film::{Film, Pyramid},
     image::{Image, write::Layer},
     plan::{effects::Effects, joins::exists},
-    render::{Job, feature},
+    render::{Job, features},
     scene::{
         Scene,
         description::{Aov, Description, Quantity},
@@ -36,13 +36,21 @@ impl Aovs {
                 "give -o a name that ends in .exr, or leave --aov out",
             ));
         }
+        if !exr && !description.integrator.aovs.is_empty() {
+            eprintln!("warning: {}: the scene's aovs are left out; only an EXR holds more than one layer", output.display());
+        }
         let mut all = if exr { description.integrator.aovs.clone() } else { Vec::new() };
         for quantity in Quantity::ALL {
             let layer = quantity.layer();
             let asked = names.iter().any(|name| name == quantity.name() || name == "all");
-            if asked && !all.iter().any(|known| known.name == layer.name) {
-                all.push(layer);
+            if !asked || all.iter().any(|known| known.of == quantity) {
+                continue;
             }
+            if let Some(known) = all.iter().find(|known| known.name == layer.name) {
+                let thing = format!("the scene has a layer {} for {}, and --aov asks for {}", known.name, known.of.name(), quantity.name());
+                return Err(Error::in_file(output, thing, "name the scene's layer otherwise, or leave --aov out"));
+            }
+            all.push(layer);
         }
         Ok(Self(all))
     }
@@ -55,6 +63,7 @@ impl Aovs {
     }
 
     /// Everything that was asked for, of a render of so many samples per pixel.
+    #[expect(clippy::too_many_arguments, reason = "layers are about everything there is")]
     pub fn develop(
         &self,
         description: &Description,
@@ -63,7 +72,10 @@ impl Aovs {
         film: &Film,
         pyramid: Option<&Pyramid>,
         samples: u32,
+        interrupt: &AtomicBool,
     ) -> Result<Developed> {
+        let first: Vec<Quantity> = self.0.iter().map(|aov| aov.of).filter(|quantity| quantity.is_of_first_surface()).collect();
+        let mut found = features(scene, &description.film, job, &first, samples, interrupt)?.into_iter();
         let mut layers = Vec::new();
         for aov in &self.0 {
             let mut push = |name: String, image| layers.push((name, aov.channels(), image));
@@ -83,7 +95,7 @@ impl Aovs {
                     image.pixels.fill([samples as f32; 3]);
                     push(aov.name.clone(), image);
                 }
-                quantity => push(aov.name.clone(), feature(scene, &description.film, job, quantity, samples)?),
+                _ => found.next().into_iter().for_each(|image| push(aov.name.clone(), image)),
             }
         }
         Ok(Developed(layers))

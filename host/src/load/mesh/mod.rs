@@ -70,6 +70,11 @@ pub fn parse(bytes: &[u8], format: Format, name: &Path) -> Result<Parsed> {
 
 /// Reads a mesh's file.
 pub(super) fn read(path: &Path, format: Format) -> Result<Parsed> {
+    if let Format::Serialized { index } = format
+        && let Ok(Some(part)) = serialized::part(path, index)
+    {
+        return parse(&part, Format::Serialized { index: 0 }, path);
+    }
     parse(&bytes(path)?, format, path)
 }
 

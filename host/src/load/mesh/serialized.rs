@@ -3,7 +3,8 @@
 //! Counts are held against what so many bytes can unpack to before anything is kept, and memory grows with what was unpacked.
 
 use std::{
-    io::{BufReader, Read},
+    fs::File,
+    io::{self, BufReader, Read, Seek, SeekFrom},
     path::Path,
 };
 
@@ -44,6 +45,41 @@ pub(super) fn read(bytes: &[u8], index: u32, path: &Path) -> Result<(Mesh, Facet
         return Err(Error::in_file(path, thing, "mend shape_index"));
     };
     mesh(bytes.get(offset..).unwrap_or(&[])).map_err(fail)
+}
+
+/// The part of a file that holds a mesh, so that a file of many is not read whole for each; nothing where that cannot be told.
+pub(super) fn part(path: &Path, index: u32) -> io::Result<Option<Vec<u8>>> {
+    let mut file = File::open(path)?;
+    let length = file.metadata()?.len();
+    let mut start = [0; 4];
+    file.read_exact(&mut start)?;
+    let size = match header(&start) {
+        Ok(THIRD) => 4_u64,
+        Ok(_) => 8,
+        Err(_) => return Ok(None),
+    };
+    let mut field = |at: u64, size: u64| {
+        let mut bytes = [0; 8];
+        file.seek(SeekFrom::Start(at))?;
+        file.read_exact(&mut bytes[..size as usize])?;
+        io::Result::Ok(u64::from_le_bytes(bytes))
+    };
+    let Some(end) = length.checked_sub(4) else { return Ok(None) };
+    let count = field(end, 4)?;
+    let Some(table) = count.checked_mul(size).and_then(|bytes| end.checked_sub(bytes)) else { return Ok(None) };
+    let index = u64::from(index);
+    if index >= count {
+        return Ok(None);
+    }
+    let first = field(table + index * size, size)?;
+    let last = if index + 1 < count { field(table + (index + 1) * size, size)? } else { table };
+    if first >= last || last > table || last - first > MOST_UNPACKED {
+        return Ok(None);
+    }
+    let mut part = vec![0; (last - first) as usize];
+    file.seek(SeekFrom::Start(first))?;
+    file.read_exact(&mut part)?;
+    Ok(Some(part))
 }
 
 /// Where a mesh begins, if there is one, and how many there are.
@@ -118,13 +154,13 @@ fn mesh(bytes: &[u8]) -> Told<(Mesh, Facets)> {
 }
 
 /// What is unpacked.
-struct Source<'a>(BufReader<std::io::Take<ZlibDecoder<&'a [u8]>>>);
+struct Source<'a>(BufReader<io::Take<ZlibDecoder<&'a [u8]>>>);
 
 impl Source<'_> {
     fn bytes<const N: usize>(&mut self) -> Told<[u8; N]> {
         let mut bytes = [0; N];
         self.0.read_exact(&mut bytes).map_err(|error| match error.kind() {
-            std::io::ErrorKind::UnexpectedEof => "the mesh ends too early".to_owned(),
+            io::ErrorKind::UnexpectedEof => "the mesh ends too early".to_owned(),
             _ => format!("the mesh cannot be unpacked ({error})"),
         })?;
         Ok(bytes)
@@ -225,6 +261,22 @@ mod tests {
                     assert_eq!((mesh.normals, mesh.triangles), (vec![[0.0, 0.0, 1.0]; 4], vec![[0, 1, 2], [0, 2, 3]]));
                 }
             }
+        }
+    }
+
+    #[test]
+    fn a_mesh_is_found_in_its_file_without_the_others() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("m.serialized");
+        for version in [THIRD, FOURTH] {
+            let meshes = [square(version, 0, 1.0), square(version, UVS, 2.0)];
+            std::fs::write(&path, file(version, &meshes)).unwrap();
+            for (index, mesh) in meshes.iter().enumerate() {
+                assert_eq!(part(&path, index as u32).unwrap().as_ref(), Some(mesh));
+            }
+            assert_eq!(part(&path, 2).unwrap(), None);
+            std::fs::write(&path, &meshes[0]).unwrap();
+            assert_eq!(part(&path, 0).unwrap(), None, "without a table the whole file is read");
         }
     }
 

@@ -85,11 +85,23 @@ fn offsets_and_scales_are_to_uv_as_mitsuba_3_puts_them_together() {
 }
 
 #[test]
+fn an_older_integrator_counts_for_its_depths() {
+    let depth = "<integer name=\"maxDepth\" value=\"4\"/><boolean name=\"lightImage\" value=\"true\"/>";
+    let loaded = old(&format!("<integrator type=\"bdpt\">{depth}</integrator>")).unwrap();
+    assert_eq!(loaded.description.integrator.max_depth, Some(4));
+    assert!(
+        loaded.warnings[0].contains("bdpt (line 2)") && loaded.warnings[0].contains("without effect: light_image"),
+        "{:?}",
+        loaded.warnings
+    );
+}
+
+#[test]
 fn what_is_no_longer_there_is_refused_with_what_to_write_instead() {
     for (content, thing) in [
         ("<bsdf type=\"phong\"/>", "bsdf type \"phong\" is not supported; use"),
         ("<emitter type=\"sunsky\"/>", "emitter type \"sunsky\" is not supported; bake"),
-        ("<integrator type=\"bdpt\"/>", "integrator type \"bdpt\" is not supported; use path"),
+        ("<integrator type=\"irrcache\"/>", "integrator type \"irrcache\" is not supported; use path"),
         ("<luminaire type=\"constant\"/>", "<luminaire> is unknown here; write <emitter>"),
         ("<camera type=\"perspective\"/>", "<camera> is unknown here; write <sensor>"),
         (

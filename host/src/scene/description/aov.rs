@@ -27,11 +27,11 @@ pub enum Quantity {
     Position,
     /// Surface coordinates.
     Uv,
-    /// Which shape, in the order of the file; those of groups follow.
+    /// Which shape, in the order of the file without those that have no area; those of groups follow.
     ShapeIndex,
-    /// Which triangle of its mesh.
+    /// Which triangle of its mesh; exact up to 2²⁴, as a float is.
     PrimIndex,
-    /// Which material, in the order of the file.
+    /// Which material, in the order in which they are first read; those inside others have numbers of their own.
     MaterialIndex,
     /// Samples of the pixel.
     Samples,
@@ -99,6 +99,11 @@ impl Quantity {
             other => other.name(),
         };
         Aov { name: name.to_owned(), of: self, words: Words::Compositors }
+    }
+
+    /// Whether it is of what the lens meets first.
+    pub fn is_of_first_surface(self) -> bool {
+        self.is_filtered() || matches!(self, Self::ShapeIndex | Self::PrimIndex | Self::MaterialIndex)
     }
 
     /// Whether it is a mean over a pixel's samples of what the lens meets first.
