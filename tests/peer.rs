@@ -148,6 +148,7 @@ rows! {
     sensor_thinlens
     shape_cube
     shape_cylinder
+    shape_cylinder_mirrored
     shape_disk
     shape_instance
     shape_merge

@@ -111,11 +111,11 @@ impl<'a> Collection<'a> {
                 let x = to_world.transform_vector3(local_x(*p1 - *p0)).as_vec3();
                 let inserted = self.primitives.cylinder(rays::Cylinder { p0: base, p1: end, x, radius }, visibility);
                 self.own(inserted, owner);
-                let outward = facing(*flip_normals);
+                let (outward, turning) = (facing(*flip_normals), to_world.matrix3.determinant().signum() as Real);
                 (
-                    Form::Cylinder { axis, length: (end - base).length() as Real, radius: radius as Real },
+                    Form::Cylinder { axis, length: (end - base).length() as Real, radius: radius as Real, turning },
                     outward,
-                    LightExtent::Tube(Tube { base, axis: end - base, x, radius, outward }),
+                    LightExtent::Tube(Tube { base, axis: end - base, x, radius, outward, turning }),
                 )
             }
             Geometry::Mesh { mesh, to_world, flip_normals } => {

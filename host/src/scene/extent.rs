@@ -114,6 +114,8 @@ pub struct Tube {
     pub radius: Real,
     /// Its normals point outwards: 1, inwards: −1.
     pub outward: Real,
+    /// 1 where u goes round the axis as a right hand's fingers do, −1 where the shape is mirrored.
+    pub turning: Real,
 }
 
 /// Triangles, chosen by area.
@@ -295,11 +297,11 @@ impl Extent for Tube {
     fn sample(&self, u: [Real; 2]) -> (Point, PerArea) {
         let (sin, cos) = math::sin_cos(2.0 * std::f32::consts::PI * u[0]);
         let frame = Frame::from_z_and_tangent(math::normalize(self.axis).unwrap_or(Vec3::Z), self.x);
-        let out = frame.x * cos + frame.y * sin;
+        let out = frame.x * cos + frame.y * (sin * self.turning);
         let normal = out * self.outward;
         let (along, arm) = (self.axis * u[1], out * self.radius);
         let offset = rounding(self.base.abs() + along.abs() + arm.abs(), normal);
-        let tangent = frame.z.cross(out);
+        let tangent = frame.z.cross(out) * self.turning;
         let point =
             Point::surface(self.base + along + arm, normal, Frame::from_z_and_tangent(normal, tangent), Vec2::new(u[0], u[1]), offset);
         (point, PerArea(1.0 / self.area()))

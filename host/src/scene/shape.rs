@@ -44,6 +44,8 @@ pub enum Form {
         length: Real,
         /// About the axis.
         radius: Real,
+        /// 1 where u goes round the axis as a right hand's fingers do, −1 where the shape is mirrored.
+        turning: Real,
     },
     /// Triangles.
     Mesh(MeshForm),
@@ -154,10 +156,10 @@ impl Shape {
                 let (uv, tangent) = round_mapping(axes, local);
                 (tangent, uv)
             }
-            Form::Cylinder { axis, .. } => {
+            Form::Cylinder { axis, turning, .. } => {
                 // Normals go back by the transpose.
                 let out = turn.map_or(at.normal, |turn| turn.along.transpose() * at.normal);
-                (axis.cross(out), Vec2::new(share_of_turn(local.y, local.x), local.z))
+                (axis.cross(out) * *turning, Vec2::new(share_of_turn(local.y * turning, local.x), local.z))
             }
         };
         let tangent = turn.map_or(tangent, |turn| turn.along * tangent);
@@ -186,10 +188,10 @@ impl Shape {
                 let down = if sin > 0.0 { (*x * a + *y * b) * (c / sin) - *z * sin } else { *x };
                 [(*y * a - *x * b) * (TURN * radius), down * (0.5 * TURN * radius)]
             }
-            Form::Cylinder { axis, length, radius } => {
+            Form::Cylinder { axis, length, radius, turning } => {
                 // In an instance the normal that was met is the world's; the axes here are the group's.
                 let out = to_world.map_or(at.normal, |m| math::normalize(m.transpose().as_mat3() * at.normal).unwrap_or(at.normal));
-                [axis.cross(out) * (TURN * radius), *axis * *length]
+                [axis.cross(out) * (TURN * radius * turning), *axis * *length]
             }
         };
         let [u, v] = derivatives.map(|d| to_world.map_or(d, |m| (*m * d.as_dvec3()).as_vec3())).map(|d| frame.to_local(d));

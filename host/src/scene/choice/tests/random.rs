@@ -99,7 +99,7 @@ pub fn all_kinds(count: usize, scale: Real, about: Vec3, seed: u64, sandbox: &Sa
             0 => on(LightExtent::Parallelogram(Parallelogram(flat(4.0))), both),
             1 => on(LightExtent::Ellipse(Ellipse(flat(std::f32::consts::PI))), both),
             2 => on(LightExtent::Ball(Ball { center: at, radius: size, axes, outward, both_sides: false }), both),
-            3 => on(LightExtent::Tube(Tube { base: at, axis: z * size, x: frame.x, radius: 0.1 * size, outward }), both),
+            3 => on(LightExtent::Tube(Tube { base: at, axis: z * size, x: frame.x, radius: 0.1 * size, outward, turning: 1.0 }), both),
             4 => on(roof(at, frame.x * size, frame.y * size, outward), both),
             5 => {
                 let spot = Spot { intensity, cutoff: 0.02 + 2.0 * random.unit(), beam_width: 0.0 };
