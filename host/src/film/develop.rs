@@ -64,22 +64,10 @@ impl Film {
     /// relMSE divides by the squared value of the picture, of which a pixel with a firefly knows little: its neighbours are asked too.
     /// It is low while few pixels have seen the light that matters, like every estimate from the samples alone.
     pub fn noise(&self) -> Option<Noise> {
-        let samples = lock(&self.tally).samples.map(|n| n as f64);
-        let total = samples[0] + samples[1];
-        if samples.contains(&0.0) {
-            return None;
-        }
-        let share = samples[0] * samples[1] / (total * total);
-        let scales = samples.map(|n| self.scale(n));
-        let whole = self.scale(total);
-        let mut variances = Vec::with_capacity(self.layout.pixels());
+        let variances = self.variances()?;
+        let whole = self.scale(self.samples() as f64);
         let mut values = Vec::with_capacity(self.layout.pixels());
-        self.each(|_, column, row, [even, odd]| {
-            let a = scales[0].value(&even, column, row);
-            let b = scales[1].value(&odd, column, row);
-            variances.push([0, 1, 2].map(|i| (a[i] - b[i]) * (a[i] - b[i]) * share));
-            values.push(whole.value(&(even + odd), column, row));
-        });
+        self.each(|_, column, row, [even, odd]| values.push(whole.value(&(even + odd), column, row)));
         let sum: f64 = variances.iter().map(|v| v.iter().sum::<f64>() / 3.0).sum();
         let width = self.layout.crop.width as usize;
         let relative = variances.iter().enumerate().map(|(index, variance)| {
@@ -93,18 +81,28 @@ impl Film {
 
     /// How far each value of [`Film::develop`] may be off, squared, as [`Film::noise`] has it; black before there are two samples.
     pub fn variance(&self) -> Image {
-        let samples = lock(&self.tally).samples.map(|n| n as f64);
         let mut image = Image::black(self.layout.crop.width, self.layout.crop.height);
-        if samples.contains(&0.0) {
-            return image;
+        for (pixel, variance) in image.pixels.iter_mut().zip(self.variances().unwrap_or_default()) {
+            *pixel = variance.map(|v| v as f32);
         }
-        let share = samples[0] * samples[1] / ((samples[0] + samples[1]) * (samples[0] + samples[1]));
-        let scales = samples.map(|n| self.scale(n));
-        self.each(|index, column, row, [even, odd]| {
-            let (a, b) = (scales[0].value(&even, column, row), scales[1].value(&odd, column, row));
-            image.pixels[index] = [0, 1, 2].map(|i| ((a[i] - b[i]) * (a[i] - b[i]) * share) as f32);
-        });
         image
+    }
+
+    /// Of each pixel, row by row; `None` before both halves have samples.
+    fn variances(&self) -> Option<Vec<[f64; 3]>> {
+        let samples = lock(&self.tally).samples.map(|n| n as f64);
+        if samples.contains(&0.0) {
+            return None;
+        }
+        let total = samples[0] + samples[1];
+        let share = samples[0] * samples[1] / (total * total);
+        let scales = samples.map(|n| self.scale(n));
+        let mut variances = Vec::with_capacity(self.layout.pixels());
+        self.each(|_, column, row, [even, odd]| {
+            let (a, b) = (scales[0].value(&even, column, row), scales[1].value(&odd, column, row));
+            variances.push([0, 1, 2].map(|i| (a[i] - b[i]) * (a[i] - b[i]) * share));
+        });
+        Some(variances)
     }
 
     fn scale(&self, samples: f64) -> Scale {
