@@ -1,8 +1,9 @@
 //! How good the plans are that `auto` chooses: `cargo bench -p bidir --bench plans [-- SCENE]... [seconds=4] [seeds=8]`.
 //!
 //! Every plan that a scene leaves open, and `path`, `light` and `bdpt`, render it for about the same CPU time on one thread, in turn, and
-//! so does `auto`, whose pilots are within its time. Efficiency is 1/(relMSE · CPU seconds), the error against a reference in two halves, the
-//! time by its median over the seeds; all of it twice, with the whole error and with the error trimmed by 0.1 %, which forgives fireflies.
+//! so does `auto`, whose pilots are within its time. Efficiency is 1/(relMSE · CPU seconds), the error against a reference in two halves;
+//! all of it twice, with the whole error and with the error trimmed by 0.1 %, which forgives fireflies. What a sample takes is told by many
+//! short renders, all plans in turn: the lower quartile, since a machine that has other work is slower by half for seconds at a time.
 //! The best fixed plan is chosen by one half of the seeds and scored by the other, both ways: chosen and scored by the same ones it would be
 //! the luckiest. Behind the measured figures of each plan stands what `auto`'s last pilot of the first seed predicted.
 
@@ -46,6 +47,9 @@ const OWN: [&str; 14] = [
 ];
 /// How many times as long as one picture each half of a reference of these takes.
 const LONG: f64 = 12.0;
+/// Samples per pixel of a render that is short, and how many of them every plan has with each seed.
+const SHORT: u32 = 4;
+const TURNS: usize = 3;
 /// Plans that have less than this share of the best one's efficiency after a first look are not looked at again.
 const HOPELESS: f64 = 0.7;
 /// The errors that plans are scored by.
@@ -100,19 +104,18 @@ struct Score {
     over: [f64; 2],
 }
 
-/// One picture: its errors and its time.
+/// One picture.
 #[derive(Clone, Copy)]
 struct Run {
     errors: [f64; ERRORS.len()],
-    seconds: f64,
     samples: u32,
 }
 
 /// The pictures of one plan, seed by seed.
 struct Entrant {
     stage: Stage,
-    /// Seconds per sample.
-    pace: f64,
+    /// CPU seconds of a sample in each of its short renders.
+    paces: Vec<f64>,
     runs: Vec<Run>,
 }
 
@@ -171,24 +174,25 @@ impl Subject {
     }
 
     fn run(&self, director: &mut impl Director, job: &Job) -> Run {
-        let (image, seconds, samples) = self.render(director, job);
+        let (image, _, samples) = self.render(director, job);
         let halves = [&self.halves[0], &self.halves[1]];
         let found = against_halves(&image, halves).expect("one size");
-        Run { errors: [found.relmse, found.relmse_trimmed].map(|error| error.max(f64::MIN_POSITIVE)), seconds, samples }
+        Run { errors: [found.relmse, found.relmse_trimmed].map(|error| error.max(f64::MIN_POSITIVE)), samples }
     }
 
     /// A fixed plan, with as many samples as take about so long at that pace.
     fn fixed(&self, entrant: &Entrant, seed: u64, seconds: f64) -> Run {
-        self.run(&mut Always, &self.job(&entrant.stage, seed, Target::Samples(samples(seconds, entrant.pace))))
+        self.run(&mut Always, &self.job(&entrant.stage, seed, Target::Samples(samples(seconds, entrant.time()))))
     }
 
-    /// Seconds per sample, at a first look: what tells how many samples an equal time is.
-    fn pace(&self, stage: &Stage) -> f64 {
-        let once = |seed| {
-            let (_, seconds, samples) = self.render(&mut Always, &self.job(stage, seed, Target::Samples(4)));
-            seconds / f64::from(samples)
-        };
-        (0..3).map(once).fold(f64::INFINITY, f64::min)
+    /// Short renders of all these, in turn.
+    fn pace(&self, entrants: &mut [Entrant]) {
+        for turn in 0..TURNS {
+            for Entrant { stage, paces, .. } in entrants.iter_mut() {
+                let (_, seconds, samples) = self.render(&mut Always, &self.job(stage, turn as u64, Target::Samples(SHORT)));
+                paces.push(seconds / f64::from(samples));
+            }
+        }
     }
 
     /// Looks, and renders with what is left of the time.
@@ -199,7 +203,7 @@ impl Subject {
         auto.begin(&self.scene, &job);
         let pilot = clock.elapsed().as_secs_f64();
         let stage = *auto.plan().last().expect("a plan");
-        let pace = entrants.iter().find(|entrant| same(&entrant.stage, &stage)).expect("an open plan").pace;
+        let pace = entrants.iter().find(|entrant| same(&entrant.stage, &stage)).expect("an open plan").time();
         let run = self.run(&mut auto, &self.job(&stage, seed, Target::Samples(samples(seconds - pilot, pace))));
         let stages = auto.plan().stages.clone();
         println!("  seed {seed}: {} after {:.0} ms", stages.iter().map(words::stage).collect::<Vec<_>>().join("; then "), 1e3 * pilot);
@@ -217,8 +221,8 @@ impl Subject {
             number += 1;
             !all[number..].iter().any(|later| same(stage, later))
         });
-        let mut entrants: Vec<Entrant> =
-            stages.into_iter().map(|stage| Entrant { pace: self.pace(&stage), stage, runs: Vec::new() }).collect();
+        let mut entrants: Vec<Entrant> = stages.into_iter().map(|stage| Entrant { stage, paces: Vec::new(), runs: Vec::new() }).collect();
+        self.pace(&mut entrants);
         for seed in [101, 102] {
             entrants.iter_mut().for_each(|entrant| entrant.runs.push(self.fixed(entrant, seed, seconds / 4.0)));
         }
@@ -234,6 +238,7 @@ impl Subject {
         entrants.iter_mut().for_each(|entrant| entrant.runs.clear());
         for seed in 0..seeds {
             entrants.iter_mut().for_each(|entrant| entrant.runs.push(self.fixed(entrant, seed, seconds)));
+            self.pace(&mut entrants);
         }
         self.report(&entrants, &auto, &named)
     }
@@ -328,11 +333,11 @@ impl Entrant {
         seeds.iter().map(|&seed| self.runs[seed].errors[by] * f64::from(self.runs[seed].samples)).sum::<f64>() / seeds.len() as f64
     }
 
-    /// CPU seconds of a sample, in the median of all runs: these machines have other work to do.
+    /// CPU seconds of a sample.
     fn time(&self) -> f64 {
-        let mut times: Vec<f64> = self.runs.iter().map(|run| run.seconds / f64::from(run.samples)).collect();
-        times.sort_by(f64::total_cmp);
-        0.5 * (times[(times.len() - 1) / 2] + times[times.len() / 2])
+        let mut paces = self.paces.clone();
+        paces.sort_by(f64::total_cmp);
+        paces[paces.len() / 4]
     }
 
     fn efficiency(&self, by: usize, seeds: &[usize]) -> f64 {

@@ -7,8 +7,6 @@ use super::{interval::Interval, subject::Snapshot};
 /// The errors whose price is told.
 pub const TARGETS: [f64; 4] = [1e-1, 1e-2, 1e-3, 1e-4];
 
-/// Seconds from which on a time is long enough to tell what samples cost.
-const LONG: f64 = 0.02;
 /// Seconds that everything takes at least: clocks are coarse.
 const SOON: f64 = 1e-6;
 /// Points that a price beyond the last of them rests on.
@@ -25,9 +23,6 @@ pub struct Method {
     pub name: &'static str,
     /// What it samples.
     pub words: String,
-    /// Whether all its samples are taken in one way.
-    #[serde(skip)]
-    pub steady: bool,
     /// Where its renders stood, by samples per pixel.
     pub points: Vec<Point>,
     /// Of the mean, as a share of the reference's.
@@ -123,49 +118,14 @@ pub fn points(runs: &[(u64, Vec<Snapshot>)]) -> Vec<Point> {
     all
 }
 
-impl Point {
-    fn relmse(&self) -> f64 {
-        self.runs.iter().map(|run| run.snapshot.errors.relmse).sum::<f64>() / self.runs.len() as f64
-    }
-
-    /// Times since the point before, of the seed for which they were shortest: what else the machine does only ever adds.
-    fn since(&self, before: Option<&Self>) -> [f64; 2] {
-        let times = |snapshot: &Snapshot| [snapshot.cpu, snapshot.wall];
-        let of = |run: &Moment| {
-            let other = before.and_then(|before| before.runs.iter().find(|other| other.seed == run.seed));
-            let [earlier, now] = [other.map_or([0.0; 2], |other| times(&other.snapshot)), times(&run.snapshot)];
-            [now[0] - earlier[0], now[1] - earlier[1]]
-        };
-        self.runs.iter().map(of).fold([f64::INFINITY; 2], |least, time| [least[0].min(time[0]), least[1].min(time[1])])
-    }
-}
-
 impl Method {
-    /// Where renders stand: errors in the mean, times as if nothing else had been done. What is left of a tiny error after the
-    /// reference's noise is taken out may be below 0.
+    /// Where renders stand in the mean. What is left of a tiny error after the reference's noise is taken out may be below 0.
     fn stands(&self) -> Vec<Stand> {
-        let before = std::iter::once(None).chain(self.points.iter().map(Some));
-        let steps: Vec<(u32, [f64; 2])> = self
-            .points
-            .iter()
-            .zip(before)
-            .map(|(point, before)| (point.spp - before.map_or(0, |before| before.spp), point.since(before)))
-            .collect();
-        // A fixed plan's samples all cost the same.
-        let pace = |time: usize| {
-            let long = steps.iter().filter(|(_, times)| times[time] >= LONG);
-            let least = long.map(|(samples, times)| times[time] / f64::from(*samples)).fold(f64::INFINITY, f64::min);
-            if self.steady { least } else { f64::INFINITY }
+        let stand = |point: &Point| {
+            let mean = |of: fn(&Snapshot) -> f64| point.runs.iter().map(|run| of(&run.snapshot)).sum::<f64>() / point.runs.len() as f64;
+            Stand { cpu: mean(|at| at.cpu).max(SOON), wall: mean(|at| at.wall).max(SOON), relmse: mean(|at| at.errors.relmse) }
         };
-        let paces = [pace(0), pace(1)];
-        let mut spent = [0.0; 2];
-        let stand = |(point, (samples, times)): (&Point, &(u32, [f64; 2]))| {
-            for ((spent, time), pace) in spent.iter_mut().zip(times).zip(paces) {
-                *spent += time.min(pace * f64::from(*samples));
-            }
-            Stand { cpu: spent[0].max(SOON), wall: spent[1].max(SOON), relmse: point.relmse() }
-        };
-        self.points.iter().zip(&steps).map(stand).collect()
+        self.points.iter().map(stand).collect()
     }
 
     /// What errors cost: where the mean curve, straight between its points in logarithms, first gets there and stays.
@@ -298,23 +258,6 @@ mod tests {
         let found = points(&[(0, of(&[1, 2, 3])), (1, of(&[1, 2]))]);
         assert_eq!(found.iter().map(|point| (point.spp, point.runs.len())).collect::<Vec<_>>(), [(1, 2), (2, 2)]);
         assert_eq!(points(&[(0, of(&[1, 2, 3]))]).len(), 3);
-    }
-
-    /// Two seeds; the second was slow from its second sample on, and then both were.
-    #[test]
-    fn what_else_the_machine_does_is_in_no_price() {
-        let errors = Errors { relmse: 0.1, trimmed: 0.1, smape: 0.1, bias: 0.0, fireflies: 0.0 };
-        let of = |times: [f64; 3]| {
-            let snapshot = |(i, cpu): (u32, f64)| Snapshot { spp: 1 << i, cpu, wall: cpu, errors };
-            (0..3).zip(times).map(snapshot).collect::<Vec<_>>()
-        };
-        let points = points(&[(0, of([1.0, 2.0, 6.0])), (1, of([1.1, 4.0, 8.0]))]);
-        let bias = Bias { interval: Interval { value: 0.0, low: None, high: None }, declared: None };
-        let mut method = Method { name: "path", words: String::new(), steady: false, points, bias };
-        let times = |method: &Method| method.stands().iter().map(|stand| stand.cpu).collect::<Vec<_>>();
-        assert_eq!(times(&method), [1.0, 2.0, 6.0]);
-        method.steady = true;
-        assert_eq!(times(&method), [1.0, 2.0, 4.0]);
     }
 
     #[test]

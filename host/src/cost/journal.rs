@@ -8,7 +8,7 @@ use std::{
 
 use serde::{Deserialize, Serialize};
 
-use super::{spent::Spent, subject::Snapshot, techniques::Techniques};
+use super::{pace::Pass, spent::Spent, subject::Snapshot, techniques::Techniques};
 use crate::{
     error::{Error, Result},
     partial::Partial,
@@ -67,6 +67,8 @@ pub enum Entry {
         seed: u64,
         /// Its errors on the way.
         snapshots: Vec<Snapshot>,
+        /// Its passes.
+        passes: Vec<Pass>,
         /// What was sampled.
         words: String,
     },
@@ -76,7 +78,7 @@ pub enum Entry {
         knob: String,
         /// To what it was turned.
         setting: String,
-        /// Its errors at the end, seed by seed.
+        /// Its errors at the end, seed by seed, and its time.
         runs: Vec<Snapshot>,
     },
     /// Where time went.

@@ -1,15 +1,17 @@
 //! The scene whose cost is asked for, and one render of it with its errors on the way.
 
 use std::{
+    cell::RefCell,
     sync::{Arc, atomic::AtomicBool},
-    time::{Duration, Instant},
 };
 
 use bidir_kernel::Strategy;
-use cpu_time::ProcessTime;
 use serde::{Deserialize, Serialize};
 
-use super::reference::{Errors, Reference};
+use super::{
+    pace::{Cut, Pass, Stopwatch, Yardstick},
+    reference::{Errors, Reference},
+};
 use crate::{
     error::{Error, Result},
     film::Film,
@@ -71,6 +73,8 @@ pub struct Snapshot {
 pub struct Run {
     /// After 1, 2, 4 … samples per pixel, or what passes there are, and at the end.
     pub snapshots: Vec<Snapshot>,
+    /// All its passes.
+    pub passes: Vec<Pass>,
     /// The picture at the end.
     pub image: Image,
     /// How it ended.
@@ -133,10 +137,11 @@ impl Subject {
         interrupt: &Arc<AtomicBool>,
     ) -> Result<Run> {
         let film = Film::new(&manner.description.film)?;
-        let mut clock = Clock::start();
+        let stopwatch = RefCell::new(Stopwatch::start(Yardstick::of(self)));
         let mut snapshots: Vec<Snapshot> = Vec::new();
         let mut failed = None;
-        let mut look = |film: &Film, samples: u32, clock: &mut Clock| {
+        let mut look = |samples: u32| {
+            let clock = &mut stopwatch.borrow_mut().clock;
             let [cpu, wall] = clock.read();
             match reference.errors(&film.develop()) {
                 Ok(errors) => snapshots.push(Snapshot { spp: samples, cpu, wall, errors }),
@@ -145,20 +150,22 @@ impl Subject {
             clock.forget([cpu, wall]);
         };
         let mut looked = 0;
-        let status = render::directed(manner.scene, &film, &self.job(manner, seed, target), director, interrupt, |status| {
+        let mut cut = Cut { director, stopwatch: &stopwatch };
+        let status = render::directed(manner.scene, &film, &self.job(manner, seed, target), &mut cut, interrupt, |status| {
+            stopwatch.borrow_mut().end(status.samples);
             if status.samples >= 2 * looked && status.samples > 0 {
-                look(&film, status.samples, &mut clock);
+                look(status.samples);
                 looked = status.samples;
             }
             None
         });
         if status.samples > looked && status.fault.is_none() {
-            look(&film, status.samples, &mut clock);
+            look(status.samples);
         }
         whole(&status)?;
         match failed {
             Some(error) => Err(error),
-            None => Ok(Run { snapshots, image: film.develop(), status }),
+            None => Ok(Run { snapshots, passes: stopwatch.into_inner().passes, image: film.develop(), status }),
         }
     }
 }
@@ -169,32 +176,5 @@ pub(super) fn whole(status: &Status) -> Result<()> {
         Some(fault) => Err(fault.clone().into()),
         None if status.failed => Err(Error::new("a render thread broke down", "this is a bug; please report it")),
         None => Ok(()),
-    }
-}
-
-/// CPU and wall-clock time of this process, less what is not to count.
-struct Clock {
-    cpu: ProcessTime,
-    wall: Instant,
-    forgotten: [Duration; 2],
-}
-
-impl Clock {
-    fn start() -> Self {
-        Self { cpu: ProcessTime::now(), wall: Instant::now(), forgotten: [Duration::ZERO; 2] }
-    }
-
-    /// Seconds: CPU, wall-clock.
-    fn read(&self) -> [f64; 2] {
-        let [cpu, wall] = self.forgotten;
-        [self.cpu.elapsed().saturating_sub(cpu), self.wall.elapsed().saturating_sub(wall)].map(|time| time.as_secs_f64())
-    }
-
-    /// What has passed since it was read does not count.
-    fn forget(&mut self, read: [f64; 2]) {
-        let now = self.read();
-        for (all, (now, then)) in self.forgotten.iter_mut().zip(now.into_iter().zip(read)) {
-            *all += Duration::from_secs_f64((now - then).max(0.0));
-        }
     }
 }

@@ -14,6 +14,7 @@ use super::{
     curve::{self, Bias, Method},
     journal::{Entry, Header, Journal},
     knobs::{self, Knob},
+    pace::{self, Paces, Pass},
     reference::Reference,
     report::{Held, Report, Shown},
     spent::{self, Spent},
@@ -244,27 +245,31 @@ impl Work<'_> {
         for seed in 0..seeds {
             for name in METHOD_NAMES {
                 let known = self.of_method(name.name());
-                if known.iter().any(|(other, ..)| *other == seed)
+                if known.iter().any(|run| run.seed == seed)
                     || self.failed(&render_of(name, seed))
                     || !self.begin(&format!("{} of {seeds}", render_of(name, seed)), slice)
                 {
                     continue;
                 }
                 // All of a method's have as many samples as the first had time for.
-                let samples = known.iter().find_map(|(_, snapshots, _)| snapshots.last()).map(|last| last.spp);
+                let samples = known.iter().find_map(|run| run.snapshots.last()).map(|last| last.spp);
                 let target = samples.map_or(Target::Time(Duration::from_secs_f64(slice)), Target::Samples);
                 self.method(name, seed, target, reference)?;
             }
         }
-        let methods = METHOD_NAMES.into_iter().filter_map(|name| {
-            let runs = self.of_method(name.name());
-            let (_, _, words) = runs.first()?.clone();
-            let biases: Vec<f64> = runs.iter().filter_map(|(_, snapshots, _)| Some(snapshots.last()?.errors.bias)).collect();
+        let all = METHOD_NAMES.map(|name| (name, self.of_method(name.name())));
+        let passes = || all.iter().flat_map(|(_, runs)| runs).flat_map(|run| &run.passes);
+        let paces = Paces::of(passes(), self.yard().unwrap_or(0.0));
+        let methods = all.into_iter().filter_map(|(name, runs)| {
+            let words = runs.first()?.words.clone();
+            let lasts: Vec<&Snapshot> = runs.iter().filter_map(|run| run.snapshots.last()).collect();
+            let biases: Vec<f64> = lasts.iter().map(|last| last.errors.bias).collect();
             let declared = name.stage().and_then(|stage| self.subject.missed(&stage));
-            let samples = runs.iter().filter_map(|(_, snapshots, _)| snapshots.last()).map(|last| last.spp).min().unwrap_or(0);
-            let points = curve::points(&runs.into_iter().map(|(seed, snapshots, _)| (seed, snapshots)).collect::<Vec<_>>());
+            let samples = lasts.iter().map(|last| last.spp).min().unwrap_or(0);
+            let kept = |run: &Measured| (run.seed, paces.kept(&run.snapshots, &run.passes));
+            let points = curve::points(&runs.iter().map(kept).collect::<Vec<_>>());
             let bias = Bias { interval: reference.interval(&biases, samples), declared };
-            Some(Method { name: name.name(), words, steady: name.stage().is_some(), points, bias })
+            Some(Method { name: name.name(), words, points, bias })
         });
         Ok(methods.collect())
     }
@@ -287,7 +292,7 @@ impl Work<'_> {
         if seed == 0 {
             self.save(name.name(), &run.image)?;
         }
-        self.journal.add(Entry::Run { method: name.name().to_owned(), seed, snapshots: run.snapshots, words })
+        self.journal.add(Entry::Run { method: name.name().to_owned(), seed, snapshots: run.snapshots, passes: run.passes, words })
     }
 
     /// A render to its end; `None` if it was interrupted.
@@ -304,12 +309,20 @@ impl Work<'_> {
         Ok((!run.status.interrupted).then_some(run))
     }
 
-    fn of_method(&self, name: &str) -> Vec<(u64, Vec<Snapshot>, String)> {
+    fn of_method(&self, name: &str) -> Vec<Measured> {
         let of = |entry: &Entry| match entry {
-            Entry::Run { method, seed, snapshots, words } if method == name => Some((*seed, snapshots.clone(), words.clone())),
+            Entry::Run { method, seed, snapshots, passes, words } if method == name => {
+                Some(Measured { seed: *seed, snapshots: snapshots.clone(), passes: passes.clone(), words: words.clone() })
+            }
             _ => None,
         };
         self.journal.entries().iter().filter_map(of).collect()
+    }
+
+    /// What a yardstick takes on a quick machine, as far as methods' renders tell.
+    fn yard(&self) -> Option<f64> {
+        let of = |entry: &'_ Entry| if let Entry::Run { passes, .. } = entry { passes.clone() } else { Vec::new() };
+        pace::yard(&self.journal.entries().iter().flat_map(of).collect::<Vec<_>>())
     }
 
     /// A render of the plan, taken apart.
@@ -389,14 +402,17 @@ impl Work<'_> {
     }
 
     fn setting(&mut self, turn: &knobs::Turn, samples: u32, reference: &Reference) -> Result<Option<Vec<Snapshot>>> {
-        let (subject, interrupt) = (self.subject, self.interrupt);
+        let (subject, interrupt, yard) = (self.subject, self.interrupt, self.yard());
         let runs = turn.render(subject, |manner| {
             let mut runs = Vec::new();
             for seed in 0..SETTING_SEEDS {
                 let run = subject.watch(manner, &mut Always, MEASURED + seed, Target::Samples(samples), reference, interrupt)?;
-                runs.extend(run.snapshots.last().filter(|_| !run.status.interrupted).copied());
+                runs.extend(Some(run).filter(|run| !run.status.interrupted));
             }
-            Ok(runs)
+            let passes = || runs.iter().flat_map(|run| &run.passes);
+            let paces = Paces::of(passes(), yard.or_else(|| pace::yard(passes())).unwrap_or(0.0));
+            let last = |run: &subject::Run| paces.kept(&run.snapshots, &run.passes).last().copied();
+            Ok(runs.iter().filter_map(last).collect::<Vec<_>>())
         });
         let Some(runs) = self.unless_failed(&format!("{}: {}", turn.knob, turn.setting), runs)? else { return Ok(None) };
         let whole = runs.len() as u64 == SETTING_SEEDS;
@@ -415,11 +431,7 @@ impl Work<'_> {
         let shown = |name: &str, words: String| Shown { name: name.to_owned(), words, file: image_file(&self.settings.folder, name) };
         let mut all = vec![shown("reference", reference.words.clone())];
         for method in methods {
-            let last = self
-                .of_method(method.name)
-                .into_iter()
-                .find(|(seed, ..)| *seed == 0)
-                .and_then(|(_, snapshots, _)| snapshots.last().copied());
+            let last = self.of_method(method.name).into_iter().find(|run| run.seed == 0).and_then(|run| run.snapshots.last().copied());
             all.extend(last.map(|last| shown(method.name, format!("{} samples per pixel, {}", last.spp, curve::seconds(last.wall)))));
         }
         all.retain(|shown| shown.file.is_file());
@@ -433,6 +445,14 @@ impl Work<'_> {
     fn save_as(&self, file: &Path, image: &Image) -> Result<()> {
         write::write(file, &Layers::from(image))
     }
+}
+
+/// A render of a method.
+struct Measured {
+    seed: u64,
+    snapshots: Vec<Snapshot>,
+    passes: Vec<Pass>,
+    words: String,
 }
 
 /// The methods that are held against each other.

@@ -15,6 +15,8 @@
 mod moments;
 mod spread;
 
+use std::ops::Range;
+
 use bidir_kernel::{Join, Technique};
 
 use self::{moments::Moments, spread::Spread};
@@ -137,15 +139,21 @@ impl Evidence {
         }
     }
 
-    /// Each pixel that was looked at, with its camera paths' contributions.
-    fn places(&self) -> impl Iterator<Item = (u32, impl Iterator<Item = &[Brought]>)> {
+    /// Each pixel that was looked at, with where in `camera` the contributions of each of its paths are.
+    fn places(&self) -> impl Iterator<Item = (u32, impl Iterator<Item = Range<usize>>)> {
         let starts = std::iter::once(0).chain(self.places.iter().map(|place| place.end));
         self.places.iter().zip(starts).map(|(place, start)| {
             let first = start.checked_sub(1).map_or(0, |before| self.ends[before]);
             let ends = &self.ends[start..place.end];
             let starts = std::iter::once(first).chain(ends.iter().copied());
-            (place.block, starts.zip(ends).map(|(start, &end)| &self.camera[start..end]))
+            (place.block, starts.zip(ends).map(|(start, &end)| start..end))
         })
+    }
+
+    /// All contributions, with the block each fell on: those of camera paths, then splats.
+    fn all(&self) -> impl Iterator<Item = (u32, &Brought)> {
+        let camera = self.places().flat_map(move |(block, paths)| paths.flatten().map(move |at| (block, &self.camera[at])));
+        camera.chain(self.splats.iter().map(|(block, brought)| (*block, brought)))
     }
 
     /// What a squared error counts in each block: 1 / (mean² + ε).
@@ -154,7 +162,7 @@ impl Evidence {
         for (block, paths) in self.places() {
             for path in paths {
                 samples[block as usize] += 1.0;
-                sums[block as usize] += path.iter().map(|brought| brought.value).sum::<f64>();
+                sums[block as usize] += self.camera[path].iter().map(|brought| brought.value).sum::<f64>();
             }
         }
         let mut means: Vec<f64> = (0..sums.len()).map(|block| self.around(block, &sums, &samples)).collect();
@@ -184,31 +192,28 @@ impl Evidence {
     /// infinite where a plan cannot make what the pilot saw.
     pub fn errors(&self, plans: &[(Stage, f64)]) -> Vec<f64> {
         let importance = self.importance();
-        plans.iter().map(|(stage, samples)| self.error(stage, *samples, &importance)).collect()
+        let mut made = Vec::with_capacity(self.camera.len() + self.splats.len());
+        plans.iter().map(|(stage, samples)| self.error(stage, *samples, &importance, &mut made).unwrap_or(f64::INFINITY)).collect()
     }
 
-    fn error(&self, stage: &Stage, samples: f64, importance: &[f64]) -> f64 {
+    /// `made` is room for what the plan makes of each contribution; `None` where there is one that it cannot make.
+    fn error(&self, stage: &Stage, samples: f64, importance: &[f64], made: &mut Vec<Made>) -> Option<f64> {
         let counts = Counts::of(stage);
         let per_sample = 1.0 / self.samples().max(1) as f64;
         let mut moments = Moments::default();
-        for (block, paths) in self.places() {
-            for brought in paths.flatten() {
-                moments.take(&counts, brought, importance[block as usize], per_sample);
-            }
-        }
-        for (block, brought) in &self.splats {
-            moments.take(&counts, brought, importance[*block as usize], per_sample);
-        }
-        if moments.missed {
-            return f64::INFINITY;
+        made.clear();
+        for (block, brought) in self.all() {
+            made.push(counts.made(brought, importance[block as usize], per_sample, &mut moments)?);
         }
         let rare = moments.rarest(ENOUGH * per_sample);
+        let (camera, splats) = made.split_at(self.camera.len());
         let mut spread = Spread::default();
         for (block, paths) in self.places() {
-            spread.place(&counts, paths, importance[block as usize], rare);
+            spread.place(&counts, paths.map(|path| &camera[path]), importance[block as usize], rare);
         }
-        let splats: f64 = self.splats.iter().map(|(block, brought)| counts.splat(brought, importance[*block as usize], rare)).sum();
-        spread.at(samples) + splats * per_sample + moments.squares(rare)
+        let often = splats.iter().zip(&self.splats).filter(|(made, _)| !made.rare(rare));
+        let splats: f64 = often.map(|(made, (block, _))| made.count * made.value * made.value * importance[*block as usize]).sum();
+        Some(spread.at(samples) + splats * per_sample + moments.squares(rare))
     }
 }
 
@@ -217,6 +222,24 @@ struct Counts {
     of: [f64; Join::COUNT],
     /// How often two pairs of vertices of the same two walks are both connected.
     both_connected: f64,
+}
+
+/// A contribution of the pilot, as a plan makes it.
+#[derive(Clone, Copy, Debug)]
+struct Made {
+    value: f64,
+    /// Of its kind of join.
+    count: f64,
+    connection: bool,
+    /// Its size among the moments, if it is elusive.
+    bin: Option<u8>,
+}
+
+impl Made {
+    /// Whether it is elusive and at least as large as those of that bin.
+    fn rare(&self, rare: usize) -> bool {
+        self.bin.is_some_and(|bin| usize::from(bin) >= rare)
+    }
 }
 
 impl Counts {
@@ -231,30 +254,15 @@ impl Counts {
         brought.shares.iter().zip(self.of).map(|(share, count)| share * count).sum()
     }
 
-    /// Whether the plan makes such a path so much more seldom than the pilot did that it may never have seen one itself.
-    /// What the lens sees directly it sees with every sample.
-    fn elusive(&self, brought: &Brought) -> bool {
-        brought.technique.length() > 1 && self.density(brought) < ELUSIVE
-    }
-
-    /// Whether it is elusive and at least as large as those of that bin.
-    fn rare(&self, brought: &Brought, importance: f64, rare: usize) -> bool {
-        self.elusive(brought) && Moments::bin(self.square(brought, importance)) >= rare
-    }
-
-    /// The squares of a splat, as often as the plan makes it, unless it is rare.
-    fn splat(&self, brought: &Brought, importance: f64, rare: usize) -> f64 {
-        if self.rare(brought, importance, rare) {
-            0.0
-        } else {
-            self.of[brought.technique.join() as usize] * self.square(brought, importance)
-        }
-    }
-
-    /// The square of what such a path brings.
-    fn square(&self, brought: &Brought, importance: f64) -> f64 {
-        let value = brought.value / self.density(brought);
-        value * value * importance
+    /// A contribution as the plan makes it, if it does; `per_sample` of them are elusive where it makes such a path so much more seldom than
+    /// the pilot did that it may never have seen one itself. What the lens sees directly it sees with every sample.
+    fn made(&self, brought: &Brought, importance: f64, per_sample: f64, moments: &mut Moments) -> Option<Made> {
+        let density = self.density(brought);
+        let value = brought.value / density;
+        let elusive = brought.technique.length() > 1 && density < ELUSIVE;
+        let bin = elusive.then(|| moments.take(density, value * value * importance, per_sample));
+        let join = brought.technique.join();
+        (density > 0.0).then_some(Made { value, count: self.of[join as usize], connection: join == Join::Connection, bin })
     }
 }
 

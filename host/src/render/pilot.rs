@@ -40,10 +40,10 @@ const ROUND: u32 = 16;
 const SAMPLES: u32 = 32;
 
 /// Of these, how many costs are measured with.
-const TIMED: usize = 6;
+const TIMED: usize = 2;
 
 /// Pixels of a round that are sampled before the clock is looked at.
-const WARMING: usize = 2;
+const WARMING: usize = 1;
 
 /// About how many blocks the image has.
 const BLOCKS: f64 = 256.0;

@@ -1,14 +1,10 @@
 //! How noisy the contributions of a plan are, told by size: the largest may be so rare that the plan itself would not have been seen to
 //! make them.
 
-use super::{Brought, Counts};
-
 /// Second moments of contributions, by how large each one is: a power of two each.
 #[derive(Clone, Debug)]
 pub(super) struct Moments {
     bins: [Bin; Self::BINS],
-    /// Whether there is one that the plan never makes.
-    pub(super) missed: bool,
 }
 
 /// Elusive contributions of one size.
@@ -22,7 +18,7 @@ struct Bin {
 
 impl Default for Moments {
     fn default() -> Self {
-        Self { bins: [Bin::default(); Self::BINS], missed: false }
+        Self { bins: [Bin::default(); Self::BINS] }
     }
 }
 
@@ -30,24 +26,18 @@ impl Moments {
     /// From 2^−64 to 2^64; what is beyond is with the last ones.
     const BINS: usize = 128;
 
-    pub(super) fn bin(square: f64) -> usize {
+    fn bin(square: f64) -> usize {
         let exponent = (square.to_bits() >> 52 & 0x7ff) as i32 - 1023;
         (exponent + Self::BINS as i32 / 2).clamp(0, Self::BINS as i32 - 1) as usize
     }
 
-    /// A contribution of the pilot, as the plan would make it: `per` sample.
-    pub(super) fn take(&mut self, counts: &Counts, brought: &Brought, importance: f64, per: f64) {
-        let density = counts.density(brought);
-        if density == 0.0 {
-            self.missed = true;
-            return;
-        }
-        if counts.elusive(brought) {
-            let square = counts.square(brought, importance);
-            let bin = &mut self.bins[Self::bin(square)];
-            bin.number += density * per;
-            bin.squares += density * square * per;
-        }
+    /// An elusive contribution: its square, and how much more densely the plan makes it than the pilot did. Returns its bin.
+    pub(super) fn take(&mut self, density: f64, square: f64, per_sample: f64) -> u8 {
+        let at = Self::bin(square);
+        let bin = &mut self.bins[at];
+        bin.number += density * per_sample;
+        bin.squares += density * square * per_sample;
+        at as u8
     }
 
     /// The first bin of those largest contributions that a sample has less than so many of.

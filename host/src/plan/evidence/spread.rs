@@ -2,7 +2,7 @@
 
 use bidir_kernel::Join;
 
-use super::{Brought, Counts};
+use super::{Counts, Made};
 
 /// What runs of camera paths vary by, beyond the second moments of their contributions: by their length, which doubles from 1 on.
 #[derive(Clone, Copy, Debug, Default)]
@@ -20,13 +20,13 @@ impl Spread {
     const LENGTHS: usize = 6;
 
     /// A pixel that was looked at, with its two runs in turn; what is rare is left out of them.
-    pub(super) fn place<'a>(&mut self, counts: &Counts, paths: impl Iterator<Item = &'a [Brought]>, importance: f64, rare: usize) {
+    pub(super) fn place<'a>(&mut self, counts: &Counts, paths: impl Iterator<Item = &'a [Made]>, importance: f64, rare: usize) {
         let mut runs = [[0.0; 1 << (Self::LENGTHS - 1)]; 2];
         let (mut number, mut all) = (0, 0.0);
         for path in paths {
             let mut one = Sample::default();
-            for brought in path {
-                one.add(counts, brought, importance, rare);
+            for made in path.iter().filter(|made| !made.rare(rare)) {
+                one.add(made);
             }
             if let Some(slot) = runs[number % 2].get_mut(number / 2) {
                 *slot = one.total;
@@ -92,17 +92,11 @@ struct Sample {
 }
 
 impl Sample {
-    fn add(&mut self, counts: &Counts, brought: &Brought, importance: f64, rare: usize) {
-        let join = brought.technique.join();
-        let count = counts.of[join as usize];
-        let value = brought.value / counts.density(brought);
-        if count == 0.0 || counts.rare(brought, importance, rare) {
-            return;
-        }
-        self.total += count * value;
-        if join == Join::Connection {
-            self.connected += value;
-            self.squares += value * value;
+    fn add(&mut self, made: &Made) {
+        self.total += made.count * made.value;
+        if made.connection {
+            self.connected += made.value;
+            self.squares += made.value * made.value;
         }
     }
 
