@@ -3,11 +3,12 @@
 //! Every plan that a scene leaves open, and `path`, `light` and `bdpt`, render it for about the same CPU time on one thread, in turn, and
 //! so does `auto`, whose pilots are within its time. Efficiency is 1/(relMSE · CPU seconds), the error against a reference in two halves;
 //! all of it twice, with the whole error and with the error trimmed by 0.1 %, which forgives fireflies. What a sample takes is told by many
-//! short renders, all plans in turn: the lower quartile, since a machine that has other work is slower by half for seconds at a time.
+//! short renders, all plans in turn, each held against a yardstick beside it, a still shorter render that is always the same: other work
+//! makes everything slower by half, for seconds at a time. All times are those of a machine where the yardstick is as quick as it ever was.
 //! The best fixed plan is chosen by one half of the seeds and scored by the other, both ways: chosen and scored by the same ones it would be
 //! the luckiest. Behind the measured figures of each plan stands what `auto`'s last pilot of the first seed predicted.
 
-use std::{path::Path, sync::atomic::AtomicBool, time::Duration};
+use std::{cell::Cell, path::Path, sync::atomic::AtomicBool, time::Duration};
 
 use bidir::{
     compare::against_halves,
@@ -50,6 +51,8 @@ const LONG: f64 = 12.0;
 /// Samples per pixel of a render that is short, and how many of them every plan has with each seed.
 const SHORT: u32 = 4;
 const TURNS: usize = 3;
+/// Samples per pixel of the yardstick.
+const YARD: u32 = 2;
 /// Plans that have less than this share of the best one's efficiency after a first look are not looked at again.
 const HOPELESS: f64 = 0.7;
 /// The errors that plans are scored by.
@@ -88,6 +91,8 @@ struct Subject {
     scene: Scene,
     effects: Effects,
     halves: [Image; 2],
+    /// CPU seconds of the quickest yardstick.
+    yard: Cell<f64>,
 }
 
 /// What came out for a scene.
@@ -114,8 +119,10 @@ struct Run {
 /// The pictures of one plan, seed by seed.
 struct Entrant {
     stage: Stage,
-    /// CPU seconds of a sample in each of its short renders.
+    /// What a sample took in each of its short renders, in yardsticks.
     paces: Vec<f64>,
+    /// CPU seconds of a sample, by all of them.
+    time: f64,
     runs: Vec<Run>,
 }
 
@@ -123,7 +130,7 @@ struct Entrant {
 struct Chosen {
     run: Run,
     stages: Vec<Stage>,
-    /// CPU seconds of its pilots.
+    /// CPU seconds of its first pilot.
     pilots: f64,
     choice: Option<Choice>,
 }
@@ -138,7 +145,8 @@ impl Subject {
         let description = load::load(&file, &defines, &library).expect("a scene").description;
         let scene = Scene::new(&description).expect("a scene");
         let effects = Effects::of(&description, &scene);
-        let mut subject = Self { name, description, scene, effects, halves: [Image::black(1, 1), Image::black(1, 1)] };
+        let mut subject =
+            Self { name, description, scene, effects, halves: [1, 2].map(|_| Image::black(1, 1)), yard: Cell::new(f64::INFINITY) };
         subject.halves = if referenced {
             ["reference.a.exr", "reference.b.exr"].map(|half| picture(&file.with_file_name(half)))
         } else {
@@ -182,16 +190,29 @@ impl Subject {
 
     /// A fixed plan, with as many samples as take about so long at that pace.
     fn fixed(&self, entrant: &Entrant, seed: u64, seconds: f64) -> Run {
-        self.run(&mut Always, &self.job(&entrant.stage, seed, Target::Samples(samples(seconds, entrant.time()))))
+        self.run(&mut Always, &self.job(&entrant.stage, seed, Target::Samples(samples(seconds, entrant.time))))
+    }
+
+    /// How long the yardstick takes now.
+    fn yardstick(&self) -> f64 {
+        let path = Named::Path.stage().expect("a plan");
+        let (_, seconds, _) = self.render(&mut Always, &self.job(&path, 0, Target::Samples(YARD)));
+        self.yard.set(self.yard.get().min(seconds));
+        seconds
     }
 
     /// Short renders of all these, in turn.
     fn pace(&self, entrants: &mut [Entrant]) {
         for turn in 0..TURNS {
             for Entrant { stage, paces, .. } in entrants.iter_mut() {
+                let before = self.yardstick();
                 let (_, seconds, samples) = self.render(&mut Always, &self.job(stage, turn as u64, Target::Samples(SHORT)));
-                paces.push(seconds / f64::from(samples));
+                paces.push(seconds / f64::from(samples) / (0.5 * (before + self.yardstick())));
             }
+        }
+        for Entrant { paces, time, .. } in entrants {
+            paces.sort_by(f64::total_cmp);
+            *time = self.yard.get() * paces[paces.len() / 2];
         }
     }
 
@@ -199,11 +220,12 @@ impl Subject {
     fn auto(&self, entrants: &[Entrant], seed: u64, seconds: f64) -> Chosen {
         let mut auto = Auto::new(&self.description, &self.effects);
         let job = self.job(&Stage::BIDIRECTIONAL, seed, Target::Time(Duration::from_secs_f64(seconds)));
-        let clock = ProcessTime::now();
+        let (before, clock) = (self.yardstick(), ProcessTime::now());
         auto.begin(&self.scene, &job);
         let pilot = clock.elapsed().as_secs_f64();
+        let pilot = pilot * self.yard.get() / (0.5 * (before + self.yardstick()));
         let stage = *auto.plan().last().expect("a plan");
-        let pace = entrants.iter().find(|entrant| same(&entrant.stage, &stage)).expect("an open plan").time();
+        let pace = entrants.iter().find(|entrant| same(&entrant.stage, &stage)).expect("an open plan").time;
         let run = self.run(&mut auto, &self.job(&stage, seed, Target::Samples(samples(seconds - pilot, pace))));
         let stages = auto.plan().stages.clone();
         println!("  seed {seed}: {} after {:.0} ms", stages.iter().map(words::stage).collect::<Vec<_>>().join("; then "), 1e3 * pilot);
@@ -221,7 +243,8 @@ impl Subject {
             number += 1;
             !all[number..].iter().any(|later| same(stage, later))
         });
-        let mut entrants: Vec<Entrant> = stages.into_iter().map(|stage| Entrant { stage, paces: Vec::new(), runs: Vec::new() }).collect();
+        let mut entrants: Vec<Entrant> =
+            stages.into_iter().map(|stage| Entrant { stage, paces: Vec::new(), time: 0.0, runs: Vec::new() }).collect();
         self.pace(&mut entrants);
         for seed in [101, 102] {
             entrants.iter_mut().for_each(|entrant| entrant.runs.push(self.fixed(entrant, seed, seconds / 4.0)));
@@ -262,7 +285,7 @@ impl Subject {
                 entrant.efficiency(1, &all),
                 entrant.error(0, &all),
                 entrant.error(1, &all),
-                1e9 * entrant.time() / pixels,
+                1e9 * entrant.time / pixels,
                 of(&|c| 1e9 / pixels * c.efficiency()),
                 of(&|c| c.error.unwrap_or(f64::INFINITY)),
                 of(&|c| c.cost),
@@ -319,7 +342,7 @@ impl Judged<'_> {
             let ends = stages.iter().skip(1).map(|stage| stage.from).chain([run.samples]);
             let of = |(stage, end): (&Stage, u32)| {
                 let entrant = self.entrants.iter().find(|entrant| same(&entrant.stage, stage)).expect("a plan that was rendered");
-                f64::from(end - stage.from) * entrant.time()
+                f64::from(end - stage.from) * entrant.time
             };
             run.errors[by] * (pilots + stages.iter().zip(ends).map(of).sum::<f64>())
         });
@@ -333,15 +356,8 @@ impl Entrant {
         seeds.iter().map(|&seed| self.runs[seed].errors[by] * f64::from(self.runs[seed].samples)).sum::<f64>() / seeds.len() as f64
     }
 
-    /// CPU seconds of a sample.
-    fn time(&self) -> f64 {
-        let mut paces = self.paces.clone();
-        paces.sort_by(f64::total_cmp);
-        paces[paces.len() / 4]
-    }
-
     fn efficiency(&self, by: usize, seeds: &[usize]) -> f64 {
-        1.0 / (self.error(by, seeds) * self.time())
+        1.0 / (self.error(by, seeds) * self.time)
     }
 }
 
