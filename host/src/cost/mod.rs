@@ -2,8 +2,8 @@
 //!
 //! [`measure`] does everything within a budget and keeps what it has in a folder; [`page`] shows it. The parts serve others too:
 //! [`mod@reference`] tells errors without the reference's own noise, [`subject`] watches a render's error as it goes on, [`curve`] tells
-//! prices and crossings, [`pace`] what samples take
-//! whatever else the machine does, [`interval`] how sure a bias is, [`spent`] where a render's time goes.
+//! prices and crossings, [`pace`] what samples take whatever else the machine does, [`interval`] how sure a bias is,
+//! [`spent`] where a render's time goes.
 
 mod casts;
 pub mod curve;

@@ -37,7 +37,7 @@ const YARD: u32 = 32;
 /// Some samples of every pixel, one after the other.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Pass {
-    /// How they were taken.
+    /// How they were taken, as if from the first sample on.
     pub stage: Stage,
     /// The first sample that is not one of them.
     pub end: u32,
@@ -68,7 +68,7 @@ impl Paces {
     pub fn of<'a>(passes: impl IntoIterator<Item = &'a Pass>, yard: f64) -> Self {
         let mut stages: Vec<(Stage, Vec<&Pass>)> = Vec::new();
         for pass in passes {
-            match stages.iter_mut().find(|(stage, _)| same(stage, &pass.stage)) {
+            match stages.iter_mut().find(|(stage, _)| *stage == pass.stage) {
                 Some((_, all)) => all.push(pass),
                 None => stages.push((pass.stage, vec![pass])),
             }
@@ -79,7 +79,7 @@ impl Paces {
     /// The same moments of a render on a quick machine. What is not samples, a pilot, was done at the pace of the first pass.
     pub fn kept(&self, snapshots: &[Snapshot], passes: &[Pass]) -> Vec<Snapshot> {
         let of = |pass: &Pass| {
-            let pace = self.stages.iter().find(|(stage, _)| same(stage, &pass.stage)).map_or([0.0; 2], |(_, pace)| *pace);
+            let pace = self.stages.iter().find(|(stage, _)| *stage == pass.stage).map_or([0.0; 2], |(_, pace)| *pace);
             pace.map(|pace| pace * f64::from(pass.samples))
         };
         let quicker = passes.first().map_or(1.0, |pass| self.yard / pass.yard);
@@ -93,11 +93,6 @@ impl Paces {
         };
         snapshots.iter().map(at).collect()
     }
-}
-
-/// Whether samples are taken alike.
-fn same(a: &Stage, b: &Stage) -> bool {
-    Stage { from: 0, ..*a } == Stage { from: 0, ..*b }
 }
 
 /// Seconds of a sample by these passes.

@@ -321,7 +321,7 @@ impl Work<'_> {
 
     /// What a yardstick takes on a quick machine, as far as methods' renders tell.
     fn yard(&self) -> Option<f64> {
-        let of = |entry: &'_ Entry| if let Entry::Run { passes, .. } = entry { passes.clone() } else { Vec::new() };
+        let of = |entry: &Entry| if let Entry::Run { passes, .. } = entry { passes.clone() } else { Vec::new() };
         pace::yard(&self.journal.entries().iter().flat_map(of).collect::<Vec<_>>())
     }
 

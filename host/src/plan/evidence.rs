@@ -254,8 +254,9 @@ impl Counts {
         brought.shares.iter().zip(self.of).map(|(share, count)| share * count).sum()
     }
 
-    /// A contribution as the plan makes it, if it does; `per_sample` of them are elusive where it makes such a path so much more seldom than
-    /// the pilot did that it may never have seen one itself. What the lens sees directly it sees with every sample.
+    /// A contribution as the plan makes it, if it does. `moments` take it, `per_sample` being 1 over the pilot's samples, if it is elusive:
+    /// where the plan makes such a path so much more seldom than the pilot did that it may never have seen one itself. What the lens sees
+    /// directly it sees with every sample.
     fn made(&self, brought: &Brought, importance: f64, per_sample: f64, moments: &mut Moments) -> Option<Made> {
         let density = self.density(brought);
         let value = brought.value / density;
