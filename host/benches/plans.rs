@@ -8,7 +8,12 @@
 //! The best fixed plan is chosen by one half of the seeds and scored by the other, both ways: chosen and scored by the same ones it would be
 //! the luckiest. Behind the measured figures of each plan stands what `auto`'s last pilot of the first seed predicted.
 
-use std::{cell::Cell, path::Path, sync::atomic::AtomicBool, time::Duration};
+use std::{
+    cell::Cell,
+    path::Path,
+    sync::atomic::{AtomicBool, Ordering},
+    time::Duration,
+};
 
 use bidir::{
     compare::against_halves,
@@ -22,7 +27,7 @@ use bidir::{
         words,
     },
     plugin::{Library, Strictness},
-    render::{self, Always, Auto, Director, Job, Numbers, Target},
+    render::{self, Always, Auto, Director, Job, Leg, Numbers, Status, Target, Told, Watch},
     scene::{Scene, description::Description},
 };
 use cpu_time::ProcessTime;
@@ -130,7 +135,7 @@ struct Entrant {
 struct Chosen {
     run: Run,
     stages: Vec<Stage>,
-    /// CPU seconds of its first pilot.
+    /// CPU seconds of its first pilot, and of all that came after it beside samples.
     pilots: f64,
     choice: Option<Choice>,
 }
@@ -158,7 +163,7 @@ impl Subject {
     /// Half a reference: the broadest plan, which leaves nothing rare.
     fn long(&self, seconds: f64, seed: u64) -> Image {
         let target = Target::Time(Duration::from_secs_f64(seconds));
-        self.render(&mut Always, &self.job(&Stage::BIDIRECTIONAL, seed, target)).0
+        self.render(&mut Always, &self.job(&Stage::BIDIRECTIONAL, seed, target), &AtomicBool::new(false)).0
     }
 
     fn job(&self, stage: &Stage, seed: u64, target: Target) -> Job {
@@ -173,16 +178,16 @@ impl Subject {
         }
     }
 
-    fn render(&self, director: &mut impl Director, job: &Job) -> (Image, f64, u32) {
+    fn render(&self, director: &mut impl Director, job: &Job, interrupt: &AtomicBool) -> (Image, f64, u32) {
         let film = Film::new(&self.description.film).expect("a film");
         let clock = ProcessTime::now();
-        let status = render::directed(&self.scene, &film, job, director, &AtomicBool::new(false), |_| None);
+        let status = render::directed(&self.scene, &film, job, director, interrupt, |_| None);
         assert!(status.fault.is_none(), "{:?}", status.fault);
         (film.develop(), clock.elapsed().as_secs_f64(), status.samples)
     }
 
-    fn run(&self, director: &mut impl Director, job: &Job) -> Run {
-        let (image, _, samples) = self.render(director, job);
+    fn run(&self, director: &mut impl Director, job: &Job, interrupt: &AtomicBool) -> Run {
+        let (image, _, samples) = self.render(director, job, interrupt);
         let halves = [&self.halves[0], &self.halves[1]];
         let found = against_halves(&image, halves).expect("one size");
         Run { errors: [found.relmse, found.relmse_trimmed].map(|error| error.max(f64::MIN_POSITIVE)), samples }
@@ -190,13 +195,13 @@ impl Subject {
 
     /// A fixed plan, with as many samples as take about so long at that pace.
     fn fixed(&self, entrant: &Entrant, seed: u64, seconds: f64) -> Run {
-        self.run(&mut Always, &self.job(&entrant.stage, seed, Target::Samples(samples(seconds, entrant.time))))
+        self.run(&mut Always, &self.job(&entrant.stage, seed, Target::Samples(samples(seconds, entrant.time))), &AtomicBool::new(false))
     }
 
     /// How long the yardstick takes now.
     fn yardstick(&self) -> f64 {
         let path = Named::Path.stage().expect("a plan");
-        let (_, seconds, _) = self.render(&mut Always, &self.job(&path, 0, Target::Samples(YARD)));
+        let (_, seconds, _) = self.render(&mut Always, &self.job(&path, 0, Target::Samples(YARD)), &AtomicBool::new(false));
         self.yard.set(self.yard.get().min(seconds));
         seconds
     }
@@ -206,7 +211,8 @@ impl Subject {
         for turn in 0..TURNS {
             for Entrant { stage, paces, .. } in entrants.iter_mut() {
                 let before = self.yardstick();
-                let (_, seconds, samples) = self.render(&mut Always, &self.job(stage, turn as u64, Target::Samples(SHORT)));
+                let (_, seconds, samples) =
+                    self.render(&mut Always, &self.job(stage, turn as u64, Target::Samples(SHORT)), &AtomicBool::new(false));
                 paces.push(seconds / f64::from(samples) / (0.5 * (before + self.yardstick())));
             }
         }
@@ -225,11 +231,15 @@ impl Subject {
         let pilot = clock.elapsed().as_secs_f64();
         let pilot = pilot * self.yard.get() / (0.5 * (before + self.yardstick()));
         let stage = *auto.plan().last().expect("a plan");
-        let pace = entrants.iter().find(|entrant| same(&entrant.stage, &stage)).expect("an open plan").time;
-        let run = self.run(&mut auto, &self.job(&stage, seed, Target::Samples(samples(seconds - pilot, pace))));
+        let interrupt = AtomicBool::new(false);
+        let mut budgeted =
+            Budgeted { auto: &mut auto, subject: self, entrants, seconds: seconds - pilot, more: 0.0, begun: None, interrupt: &interrupt };
+        let run = self.run(&mut budgeted, &Job { strategy: stage.strategy(&self.description.integrator), ..job }, &interrupt);
+        let more = budgeted.more;
         let stages = auto.plan().stages.clone();
-        println!("  seed {seed}: {} after {:.0} ms", stages.iter().map(words::stage).collect::<Vec<_>>().join("; then "), 1e3 * pilot);
-        Chosen { run, stages, pilots: pilot, choice: auto.choice().cloned() }
+        let words: Vec<_> = stages.iter().map(|stage| format!("{} from {}", words::stage(stage), stage.from)).collect();
+        println!("  seed {seed}: {} after {:.0} ms, watching {:.0} ms", words.join("; then "), 1e3 * pilot, 1e3 * more);
+        Chosen { run, stages, pilots: pilot + more, choice: auto.choice().cloned() }
     }
 
     fn measure(&self, seconds: f64, seeds: u64) -> Found {
@@ -295,6 +305,58 @@ impl Subject {
     }
 }
 
+/// `auto` with as many samples as take about so long, each at the pace of the plan it is taken by.
+struct Budgeted<'a> {
+    auto: &'a mut Auto,
+    subject: &'a Subject,
+    entrants: &'a [Entrant],
+    /// For all samples.
+    seconds: f64,
+    /// What watched ones took more than others, and looking back at them took, by the clock.
+    more: f64,
+    /// When watched samples were begun, with which, by which pace, beside what yardstick.
+    begun: Option<(ProcessTime, u32, f64, f64)>,
+    interrupt: &'a AtomicBool,
+}
+
+impl Director for Budgeted<'_> {
+    fn next(&mut self, scene: &Scene, job: &Job, status: &Status, film: &dyn Told) -> Leg {
+        if let Some((clock, from, pace, before)) = self.begun.take() {
+            let seconds = clock.elapsed().as_secs_f64();
+            let seconds = seconds * self.subject.yard.get() / (0.5 * (before + self.subject.yardstick()));
+            self.more += seconds - f64::from(status.samples - from) * pace;
+        }
+        let clock = ProcessTime::now();
+        let leg = self.auto.next(scene, job, status, film);
+        self.more += clock.elapsed().as_secs_f64();
+        let stages = &self.auto.plan().stages;
+        let left = self.seconds - self.more - spent(stages, status.samples, self.entrants);
+        let pace = stages.last().map_or(f64::INFINITY, |stage| pace(stage, self.entrants));
+        let more = (left / pace).round().max(0.0) as u32;
+        self.interrupt.store(more == 0, Ordering::Relaxed);
+        if leg.watch.is_some() {
+            let yardstick = self.subject.yardstick();
+            self.begun = Some((ProcessTime::now(), status.samples, pace, yardstick));
+        }
+        Leg { end: leg.end.min(status.samples + more.max(1)), ..leg }
+    }
+
+    fn watched(&mut self, watch: Watch) {
+        self.auto.watched(watch);
+    }
+}
+
+/// CPU seconds of a sample by a plan.
+fn pace(stage: &Stage, entrants: &[Entrant]) -> f64 {
+    entrants.iter().find(|entrant| same(&entrant.stage, stage)).expect("an open plan").time
+}
+
+/// CPU seconds of so many samples by these stages.
+fn spent(stages: &[Stage], samples: u32, entrants: &[Entrant]) -> f64 {
+    let ends = stages.iter().skip(1).map(|stage| stage.from).chain([samples]);
+    stages.iter().zip(ends).map(|(stage, end)| f64::from(end - stage.from) * pace(stage, entrants)).sum()
+}
+
 /// `auto`'s pictures, each at the price of its plan.
 struct Judged<'a> {
     entrants: &'a [Entrant],
@@ -339,12 +401,7 @@ impl Judged<'_> {
     fn efficiency(&self, by: usize, seeds: &[usize]) -> f64 {
         let products = seeds.iter().map(|&seed| {
             let Chosen { run, stages, pilots, .. } = &self.chosen[seed];
-            let ends = stages.iter().skip(1).map(|stage| stage.from).chain([run.samples]);
-            let of = |(stage, end): (&Stage, u32)| {
-                let entrant = self.entrants.iter().find(|entrant| same(&entrant.stage, stage)).expect("a plan that was rendered");
-                f64::from(end - stage.from) * entrant.time
-            };
-            run.errors[by] * (pilots + stages.iter().zip(ends).map(of).sum::<f64>())
+            run.errors[by] * (pilots + spent(stages, run.samples, self.entrants))
         });
         seeds.len() as f64 / products.sum::<f64>()
     }

@@ -18,7 +18,7 @@ use super::subject::{Snapshot, Subject};
 use crate::{
     film::Film,
     plan::Stage,
-    render::{Director, Job, Leg, Status, Target, render},
+    render::{Director, Job, Leg, Status, Target, Told, Watch, render},
     scene::{
         Scene,
         description::{Crop, FilmSettings},
@@ -206,12 +206,16 @@ pub(super) struct Cut<'a, 's, D> {
 }
 
 impl<D: Director> Director for Cut<'_, '_, D> {
-    fn next(&mut self, scene: &Scene, job: &Job, status: &Status, error: &dyn Fn() -> Option<f64>) -> Leg {
-        let leg = self.director.next(scene, job, status, error);
+    fn next(&mut self, scene: &Scene, job: &Job, status: &Status, film: &dyn Told) -> Leg {
+        let leg = self.director.next(scene, job, status, film);
         let mut stopwatch = self.stopwatch.borrow_mut();
         let begun = stopwatch.clock.read();
         stopwatch.under_way = Some((Stage::of(&leg.strategy.techniques), status.samples, begun));
         Leg { end: leg.end.min(status.samples.saturating_add(stopwatch.few())), ..leg }
+    }
+
+    fn watched(&mut self, watch: Watch) {
+        self.director.watched(watch);
     }
 }
 

@@ -3,7 +3,13 @@
 use bidir_kernel::{Join, Techniques};
 use serde::Serialize;
 
-use super::{Stage, effects::Effects, evidence::Evidence, joins::possible, plugins::Plugin};
+use super::{
+    Stage,
+    effects::Effects,
+    evidence::{Evidence, Record},
+    joins::possible,
+    plugins::Plugin,
+};
 
 /// Light paths per camera path that are tried.
 const WALKS: [f64; 5] = [0.0, 0.25, 0.5, 1.0, 2.0];
@@ -16,6 +22,10 @@ const CONNECTIONS: [f64; 4] = [0.0, 0.25, 0.5, 1.0];
 /// these bounds.
 const LUCK: f64 = 6.0;
 const MARGIN: [f64; 2] = [0.02, 0.1];
+
+/// Light that is rarer than all that was seen is dearer to plans that leave a kind of join out: one that makes all is left only for one that
+/// is so many times as good, or as good as the second where it has no light paths at all.
+const INSURANCE: [f64; 2] = [1.05, 1.25];
 
 /// What costs of rationed light paths and connections are told from: a quarter of them.
 pub const RATION: f64 = 0.25;
@@ -87,14 +97,24 @@ pub struct Seen {
     pub samples: f64,
     /// Its estimated relMSE.
     pub error: f64,
+    /// How many times what was told of it it was before, when what is rare had just been watched: then it was that bright things are
+    /// smaller, or dark ones darker, than a pilot knows.
+    pub before: f64,
 }
 
 impl Seen {
+    /// How many times as noisy it is as is told; at least once.
+    pub fn times(&self, evidence: &Evidence, record: &Record) -> f64 {
+        let told = evidence.errors(&[(self.stage, self.samples)], Some(record))[0];
+        let times = self.error * self.samples / told.max(f64::MIN_POSITIVE);
+        if times.is_finite() { times.max(1.0) } else { 1.0 }
+    }
+
     /// How much noisier it is than a pilot says, in relMSE times samples per pixel. That is of light too rare for the pilot; and what is so
     /// rare most plans make about as seldom as each other.
-    fn beyond(&self, evidence: &Evidence) -> f64 {
-        let told = evidence.errors(&[(self.stage, self.samples)])[0];
-        let beyond = self.error * self.samples - told;
+    fn beyond(&self, evidence: &Evidence, record: Option<&Record>) -> f64 {
+        let told = evidence.errors(&[(self.stage, self.samples)], record)[0];
+        let beyond = self.error * self.samples - self.before * told;
         if beyond.is_finite() { beyond.max(0.0) } else { 0.0 }
     }
 }
@@ -128,6 +148,8 @@ pub struct Choice {
     pub costs: Costs,
     /// Camera paths of the pilot.
     pub camera_paths: usize,
+    /// Camera paths of the render that were watched.
+    pub watched: usize,
     /// How much of every error, times samples per pixel, the render saw and the pilot did not.
     pub beyond: f64,
     /// What each kind of join costs and saves.
@@ -143,7 +165,7 @@ impl Choice {
     pub(super) fn at(&self, costs: &Costs) -> Candidate {
         let all: Vec<_> = self.candidates.iter().map(|candidate| Candidate { cost: costs.of(&candidate.stage), ..*candidate }).collect();
         let stays = |candidate: &Candidate| candidate.stage.techniques() == self.chosen.stage.techniques();
-        settled(&all, self.camera_paths, stays).unwrap_or(self.chosen)
+        settled(&all, self.camera_paths + self.watched, stays, |_| false).unwrap_or(self.chosen)
     }
 }
 
@@ -180,34 +202,49 @@ pub fn open(effects: &Effects, max_depth: Option<u32>) -> Vec<Stage> {
     all
 }
 
+/// Whether a plan makes every kind of join that any open one makes: nothing that another plan would bring stays hidden from who watches it.
+pub fn is_full(stage: &Stage, open: &[Stage]) -> bool {
+    Join::ALL.iter().all(|&join| stage.effort(join) > 0.0 || open.iter().all(|open| open.effort(join) == 0.0))
+}
+
 /// The plan with the most ways to make a path, each once: for a scene of which nothing was seen.
 pub fn broadest(open: &[Stage]) -> Option<Stage> {
     let breadth = |stage: &Stage| Join::ALL.map(|join| stage.effort(join).min(1.0)).iter().sum::<f64>();
     open.iter().copied().max_by(|a, b| breadth(a).total_cmp(&breadth(b)))
 }
 
-/// The best one, or the best of those that stay, if chance might have put it behind.
-fn settled(all: &[Candidate], samples: usize, stays: impl Fn(&Candidate) -> bool) -> Option<Candidate> {
+/// The best one, or the best of those that stay, if chance might have put it behind, or the best of those that make every kind of join.
+fn settled(all: &[Candidate], samples: usize, stays: impl Fn(&Candidate) -> bool, full: impl Fn(&Candidate) -> bool) -> Option<Candidate> {
     let by_efficiency = |a: &&Candidate, b: &&Candidate| a.efficiency().total_cmp(&b.efficiency());
     let best = all.iter().max_by(by_efficiency)?;
-    let staying = all.iter().filter(|candidate| stays(candidate)).max_by(by_efficiency);
-    staying.filter(|staying| staying.efficiency() * margin(samples) >= best.efficiency()).or(Some(best)).copied()
+    let near = |which: &dyn Fn(&Candidate) -> bool, margin: f64| {
+        let nearest = all.iter().filter(|candidate| which(candidate)).max_by(by_efficiency);
+        nearest.filter(|nearest| nearest.efficiency() * margin >= best.efficiency())
+    };
+    let insurance = if best.stage.techniques().light_walks() > 0.0 { INSURANCE[0] } else { INSURANCE[1] };
+    near(&stays, margin(samples)).or_else(|| near(&full, insurance)).or(Some(best)).copied()
 }
 
-/// A plan for what the pilot saw and what it took, and what the render saw beyond that: the stage under way, unless one of the open ones is
-/// clearly better.
-pub fn choose(
-    open: &[Stage],
-    evidence: &Evidence,
-    costs: &Costs,
-    until: Until,
-    under_way: Option<&Stage>,
-    seen: Option<&Seen>,
-) -> Option<Choice> {
-    let beyond = seen.map_or(0.0, |seen| seen.beyond(evidence));
-    let look = |stages: &[Stage]| -> Vec<Candidate> {
+/// What a choice rests on.
+#[derive(Clone, Copy, Debug)]
+pub struct Known<'a> {
+    /// What a pilot saw.
+    pub evidence: &'a Evidence,
+    /// What it took.
+    pub costs: &'a Costs,
+    /// What the render's first samples brought that the pilot saw too little of.
+    pub record: Option<&'a Record>,
+    /// What the render said of its error.
+    pub seen: Option<&'a Seen>,
+}
+
+/// A plan for what is known: the stage under way, unless one of the open ones is clearly better.
+pub fn choose(open: &[Stage], known: &Known, until: Until, under_way: Option<&Stage>) -> Option<Choice> {
+    let Known { evidence, costs, record, seen } = *known;
+    let beyond = seen.map_or(0.0, |seen| seen.beyond(evidence, record));
+    let look = |stages: &[Stage], record: Option<&Record>| -> Vec<Candidate> {
         let plans: Vec<_> = stages.iter().map(|stage| (*stage, until.samples(costs.of(stage)))).collect();
-        let errors = evidence.errors(&plans);
+        let errors = evidence.errors(&plans, record);
         let candidate = |(stage, error): (&Stage, f64)| Candidate {
             stage: *stage,
             error: error.is_finite().then_some(error.max(0.0) + beyond),
@@ -218,25 +255,33 @@ pub fn choose(
     if evidence.samples() == 0 {
         return None;
     }
-    let mut all = look(open);
+    // Of plans that nobody watched for it is known that they were hopeless, and not how much of the rare they have.
+    let watched = |stage: &&Stage| record.is_none_or(|record| record.knows(stage));
+    let mut all = look(&open.iter().filter(watched).copied().collect::<Vec<_>>(), record);
     if let Some(stage) = under_way.filter(|stage| all.iter().all(|candidate| candidate.stage.techniques() != stage.techniques())) {
-        all.extend(look(&[*stage]));
+        all.extend(look(&[*stage], record));
     }
     all.sort_by(|a, b| b.efficiency().total_cmp(&a.efficiency()));
     let stays = |candidate: &Candidate| match under_way {
         Some(stage) => stage.techniques() == candidate.stage.techniques(),
         None => candidate.stage.techniques().light_walks() == 0.0,
     };
-    let chosen = settled(&all, evidence.samples(), stays)?;
+    let (camera_paths, watched) = (evidence.samples(), record.map_or(0, Record::samples));
+    // Before the first sample it is said what a render would do that is not watched.
+    let full = |candidate: &Candidate| under_way.is_some() && is_full(&candidate.stage, open);
+    let chosen = settled(&all, camera_paths + watched, stays, full)?;
     let used: Vec<Join> = Join::ALL.into_iter().filter(|&join| chosen.stage.effort(join) > 0.0).collect();
-    let without: Vec<Stage> = used.iter().map(|&join| chosen.stage.without(join)).collect();
-    let joins = used.iter().zip(look(&without)).map(|(&join, left)| Worth {
+    // Nobody watches for plans that are not open: the pilot alone knows them all.
+    let stages: Vec<Stage> = std::iter::once(chosen.stage).chain(used.iter().map(|&join| chosen.stage.without(join))).collect();
+    let told = look(&stages, None);
+    let joins = used.iter().zip(&told[1..]).map(|(&join, left)| Worth {
         join: super::joins::name(join),
         cost: (1.0 - left.cost / chosen.cost).max(0.0),
-        error_without: left.error.zip(chosen.error).map(|(without, with)| without / with.max(f64::MIN_POSITIVE)),
+        error_without: left.error.zip(told[0].error).map(|(without, with)| without / with.max(f64::MIN_POSITIVE)),
     });
-    let (joins, camera_paths) = (joins.collect(), evidence.samples());
-    Some(Choice { chosen, joins, costs: *costs, camera_paths, beyond, candidates: all, plugins: Vec::new(), without_plugins: None })
+    let joins = joins.collect();
+    let (costs, candidates) = (*costs, all);
+    Some(Choice { chosen, candidates, costs, camera_paths, watched, beyond, joins, plugins: Vec::new(), without_plugins: None })
 }
 
 impl Stage {
@@ -264,7 +309,10 @@ mod tests {
     use bidir_kernel::Technique;
 
     use super::*;
-    use crate::plan::evidence::Brought;
+    use crate::{
+        plan::evidence::{Brought, Grid},
+        scene::description::Crop,
+    };
 
     const ROOM: Effects = Effects { area_lights: true, diffuse: true, ..Effects::NONE };
 
@@ -282,7 +330,7 @@ mod tests {
     }
 
     fn evidence(shares: [f64; 5]) -> Evidence {
-        let mut evidence = Evidence::new(vec![1.0], 1);
+        let mut evidence = Evidence::new(Grid::new(Crop { x: 0, y: 0, width: 1, height: 1 }));
         for i in 0..64 {
             if i % 8 == 0 {
                 evidence.add(Brought { value: 1.0, technique: Technique { s: 1, t: 3 }, shares });
@@ -305,10 +353,14 @@ mod tests {
         rationed: 0.0,
     };
 
+    fn known(evidence: &Evidence) -> Known<'_> {
+        Known { evidence, costs: &COSTS, record: None, seen: None }
+    }
+
     #[test]
     fn light_paths_run_where_they_pay() {
         let open = open(&ROOM, None);
-        let choose = |shares| choose(&open, &evidence(shares), &COSTS, Until::Samples(32.0), None, None).unwrap().chosen.stage;
+        let choose = |shares| choose(&open, &known(&evidence(shares)), Until::Samples(32.0), None).unwrap().chosen.stage;
         // What the camera finds as well as anything.
         assert_eq!(choose([0.2, 0.78, 0.01, 0.01, 0.0]).lens_splat, 0.0);
         // What it hardly ever finds.
@@ -321,10 +373,10 @@ mod tests {
     #[test]
     fn where_all_plans_are_noisy_alike_a_cheap_one_is_better() {
         let (open, evidence) = (open(&ROOM, None), evidence([0.001, 0.0, 0.0, 0.999, 0.0]));
-        let choose = |seen: Option<&Seen>| choose(&open, &evidence, &COSTS, Until::Samples(32.0), None, seen).unwrap();
+        let choose = |seen: Option<&Seen>| choose(&open, &Known { seen, ..known(&evidence) }, Until::Samples(32.0), None).unwrap();
         let first = choose(None);
-        let told = evidence.errors(&[(first.chosen.stage, 16.0)])[0];
-        let seen = |beyond| Seen { stage: first.chosen.stage, samples: 16.0, error: (told + beyond) / 16.0 };
+        let told = evidence.errors(&[(first.chosen.stage, 16.0)], None)[0];
+        let seen = |beyond| Seen { stage: first.chosen.stage, samples: 16.0, error: (told + beyond) / 16.0, before: 1.0 };
         let (as_told, noisier) = (choose(Some(&seen(0.0))), choose(Some(&seen(1e3))));
         assert!(as_told.beyond < 1e-9 && as_told.chosen.stage == first.chosen.stage);
         assert!((noisier.beyond - 1e3).abs() < 1e-6, "{}", noisier.beyond);
@@ -340,7 +392,7 @@ mod tests {
         };
         let all = [candidate(1.0, 1.0), candidate(0.5, 1.05), candidate(0.0, 1.5)];
         let after = |samples: usize, under_way: f64| {
-            settled(&all, samples, |candidate| candidate.stage.lens_splat == under_way).unwrap().stage.lens_splat
+            settled(&all, samples, |candidate| candidate.stage.lens_splat == under_way, |_| false).unwrap().stage.lens_splat
         };
         // 5 % are chance to few camera paths, and are none to many; 50 % are none to either.
         assert_eq!([1.0, 0.5, 0.0, 2.0].map(|under_way| after(1_000, under_way)), [1.0, 0.5, 1.0, 1.0]);

@@ -12,15 +12,19 @@
 //! samples' distance from each other helps, and by how much it will help a render of many more. Splats of all pixels' walks fall
 //! where they like: each for itself.
 
+mod grid;
 mod moments;
+mod record;
 mod spread;
 
 use std::ops::Range;
 
 use bidir_kernel::{Join, Technique};
 
+pub use self::{grid::Grid, record::Record};
 use self::{moments::Moments, spread::Spread};
 use super::Stage;
+use crate::image::Image;
 
 /// Keeps a relative squared error finite in black pixels; relMSE's usual ε.
 const EPSILON: f64 = 0.01;
@@ -28,7 +32,8 @@ const EPSILON: f64 = 0.01;
 /// Contributions of which the pilot would have fewer than this by the plan itself are rare.
 const ENOUGH: f64 = 16.0;
 
-/// Contributions are elusive which a plan makes less than so many times as densely as the pilot.
+/// Contributions are elusive which a plan makes less than so many times as densely as the pilot. Where the render's own are watched,
+/// all are, whatever the plan: what is told from a hundred times as many samples need not be told from the pilot's.
 const ELUSIVE: f64 = 0.6;
 
 /// A contribution of the pilot.
@@ -42,27 +47,24 @@ pub struct Brought {
     pub shares: [f64; Join::COUNT],
 }
 
-/// All that a pilot brought. Blocks are parts of the image whose pixels are taken to be about equally bright.
-#[derive(Clone, Debug, Default)]
+/// All that a pilot brought.
+#[derive(Clone, Debug)]
 pub struct Evidence {
-    /// Pixels of the image.
-    pixels: f64,
-    /// Pixels of each block, row by row.
-    sizes: Vec<f64>,
-    /// Blocks in a row.
-    columns: usize,
+    grid: Grid,
+    /// Of each cell, where a picture told it; until then the pixels of a block are taken to be about equally bright.
+    brightness: Option<Vec<f32>>,
     places: Vec<Place>,
     /// Where the contributions of each camera path end in `camera`.
     ends: Vec<usize>,
     camera: Vec<Brought>,
-    /// With the block each fell on.
+    /// With the cell each fell on.
     splats: Vec<(u32, Brought)>,
 }
 
 /// A pixel that was looked at.
 #[derive(Clone, Copy, Debug)]
 struct Place {
-    block: u32,
+    cell: u32,
     /// Where its camera paths end in `ends`: those of even and of odd number are the two runs.
     end: usize,
     /// Where what its light paths brought ends in `splats`.
@@ -70,9 +72,19 @@ struct Place {
 }
 
 impl Evidence {
-    /// Nothing yet, of an image whose blocks have that many pixels, so many of them in a row.
-    pub fn new(sizes: Vec<f64>, columns: usize) -> Self {
-        Self { pixels: sizes.iter().sum(), sizes, columns, ..Self::default() }
+    /// Nothing yet.
+    pub fn new(grid: Grid) -> Self {
+        Self { grid, brightness: None, places: Vec::new(), ends: Vec::new(), camera: Vec::new(), splats: Vec::new() }
+    }
+
+    /// Where contributions fall.
+    pub fn grid(&self) -> &Grid {
+        &self.grid
+    }
+
+    /// How bright the image is, as far as a noisy picture of it tells.
+    pub fn see(&mut self, image: &Image) {
+        self.brightness = Some(self.grid.brightness(image));
     }
 
     /// A contribution of the camera path under way.
@@ -80,9 +92,9 @@ impl Evidence {
         self.camera.push(brought);
     }
 
-    /// A contribution of a light path to a block of the image.
-    pub fn splat(&mut self, block: u32, brought: Brought) {
-        self.splats.push((block, brought));
+    /// A contribution of a light path to a cell of the image.
+    pub fn splat(&mut self, cell: u32, brought: Brought) {
+        self.splats.push((cell, brought));
     }
 
     /// How many contributions camera paths have brought.
@@ -100,9 +112,9 @@ impl Evidence {
         self.ends.push(self.camera.len());
     }
 
-    /// All camera paths of a pixel of this block are done, the two runs in turn.
-    pub fn end_place(&mut self, block: u32) {
-        self.places.push(Place { block, end: self.ends.len(), splats: self.splats.len() });
+    /// All camera paths of a pixel in this cell are done, the two runs in turn.
+    pub fn end_place(&mut self, cell: u32) {
+        self.places.push(Place { cell, end: self.ends.len(), splats: self.splats.len() });
     }
 
     /// Camera paths.
@@ -122,8 +134,8 @@ impl Evidence {
 
     /// Forgets every other pixel, and with it what its light paths brought: room for what is seen from now on.
     pub fn thin(&mut self) {
-        let all = std::mem::take(self);
-        *self = Self::new(all.sizes, all.columns);
+        let all = std::mem::replace(self, Self::new(self.grid));
+        *self = Self { brightness: all.brightness, ..Self::new(all.grid) };
         let (mut first, mut first_splat) = (0_usize, 0);
         for (turn, place) in all.places.iter().enumerate() {
             if turn % 2 == 1 {
@@ -133,7 +145,7 @@ impl Evidence {
                 self.camera.extend_from_slice(&all.camera[start..ends.last().copied().unwrap_or(start)]);
                 self.ends.extend(ends.iter().map(|end| end - start + moved));
                 self.splats.extend_from_slice(&all.splats[first_splat..place.splats]);
-                self.end_place(place.block);
+                self.end_place(place.cell);
             }
             (first, first_splat) = (place.end, place.splats);
         }
@@ -146,36 +158,43 @@ impl Evidence {
             let first = start.checked_sub(1).map_or(0, |before| self.ends[before]);
             let ends = &self.ends[start..place.end];
             let starts = std::iter::once(first).chain(ends.iter().copied());
-            (place.block, starts.zip(ends).map(|(start, &end)| start..end))
+            (place.cell, starts.zip(ends).map(|(start, &end)| start..end))
         })
     }
 
-    /// All contributions, with the block each fell on: those of camera paths, then splats.
+    /// All contributions, with the cell each fell on: those of camera paths, then splats.
     fn all(&self) -> impl Iterator<Item = (u32, &Brought)> {
-        let camera = self.places().flat_map(move |(block, paths)| paths.flatten().map(move |at| (block, &self.camera[at])));
-        camera.chain(self.splats.iter().map(|(block, brought)| (*block, brought)))
+        let camera = self.places().flat_map(move |(cell, paths)| paths.flatten().map(move |at| (cell, &self.camera[at])));
+        camera.chain(self.splats.iter().map(|(cell, brought)| (*cell, brought)))
     }
 
-    /// What a squared error counts in each block: 1 / (mean² + ε).
-    fn importance(&self) -> Vec<f64> {
-        let (mut sums, mut samples) = (vec![0.0; self.sizes.len()], vec![0.0; self.sizes.len()]);
-        for (block, paths) in self.places() {
+    /// What a squared error counts in each cell: 1 / (mean² + ε).
+    pub(super) fn importance(&self) -> Vec<f64> {
+        let counts = |mean: f64| 1.0 / (mean * mean + EPSILON);
+        if let Some(brightness) = &self.brightness {
+            return brightness.iter().map(|mean| counts(f64::from(*mean))).collect();
+        }
+        let blocks = self.grid.blocks().iter().product();
+        let (mut sums, mut samples) = (vec![0.0; blocks], vec![0.0; blocks]);
+        for (cell, paths) in self.places() {
+            let block = self.grid.block(cell as usize);
             for path in paths {
-                samples[block as usize] += 1.0;
-                sums[block as usize] += self.camera[path].iter().map(|brought| brought.value).sum::<f64>();
+                samples[block] += 1.0;
+                sums[block] += self.camera[path].iter().map(|brought| brought.value).sum::<f64>();
             }
         }
-        let mut means: Vec<f64> = (0..sums.len()).map(|block| self.around(block, &sums, &samples)).collect();
-        for (block, brought) in &self.splats {
+        let mut means: Vec<f64> = (0..blocks).map(|block| self.around(block, &sums, &samples)).collect();
+        for (cell, brought) in &self.splats {
+            let block = self.grid.block(*cell as usize);
             // Every walk may land anywhere; the image has one per pixel.
-            means[*block as usize] += brought.value * self.pixels / (self.samples() as f64 * self.sizes[*block as usize]);
+            means[block] += brought.value * self.grid.pixels() / (self.samples() as f64 * self.grid.size(block));
         }
-        means.into_iter().map(|mean| 1.0 / (mean * mean + EPSILON)).collect()
+        (0..self.grid.cells()).map(|cell| counts(means[self.grid.block(cell)])).collect()
     }
 
     /// Σ sums / Σ samples of a block, or of those nearest to it that have samples.
     fn around(&self, block: usize, sums: &[f64], samples: &[f64]) -> f64 {
-        let (columns, rows) = (self.columns, self.sizes.len() / self.columns);
+        let [rows, columns] = self.grid.blocks();
         let near = |at: usize, radius: usize, end: usize| at.saturating_sub(radius)..(at + radius + 1).min(end);
         for radius in 0..columns.max(rows) {
             let window =
@@ -188,33 +207,60 @@ impl Evidence {
         0.0
     }
 
-    /// The relMSE of renders by these plans that have so many samples per pixel, times their number;
-    /// infinite where a plan cannot make what the pilot saw.
-    pub fn errors(&self, plans: &[(Stage, f64)]) -> Vec<f64> {
+    /// A record for samples by `under_way` of what is rare in these plans.
+    pub fn record(&self, under_way: &Stage, plans: &[Stage]) -> Record {
         let importance = self.importance();
         let mut made = Vec::with_capacity(self.camera.len() + self.splats.len());
-        plans.iter().map(|(stage, samples)| self.error(stage, *samples, &importance, &mut made).unwrap_or(f64::INFINITY)).collect()
+        let mut rare = |stage: &Stage| Some((*stage, self.make(&Counts::of(stage), &importance, f64::INFINITY, &mut made)?.rare));
+        let plans: Vec<_> = plans.iter().filter_map(&mut rare).collect();
+        Record::new(under_way, plans.into_iter(), importance)
+    }
+
+    /// The relMSE of renders by these plans that have so many samples per pixel, times their number;
+    /// infinite where a plan cannot make what was seen, by the pilot or, if it has a record, the render.
+    pub fn errors(&self, plans: &[(Stage, f64)], record: Option<&Record>) -> Vec<f64> {
+        let importance = self.importance();
+        let mut made = Vec::with_capacity(self.camera.len() + self.splats.len());
+        let mut error =
+            |(stage, samples): &(Stage, f64)| self.error(stage, *samples, &importance, record, &mut made).unwrap_or(f64::INFINITY);
+        plans.iter().map(&mut error).collect()
     }
 
     /// `made` is room for what the plan makes of each contribution; `None` where there is one that it cannot make.
-    fn error(&self, stage: &Stage, samples: f64, importance: &[f64], made: &mut Vec<Made>) -> Option<f64> {
+    fn error(&self, stage: &Stage, samples: f64, importance: &[f64], record: Option<&Record>, made: &mut Vec<Made>) -> Option<f64> {
         let counts = Counts::of(stage);
+        let recorded = record.and_then(|record| record.of(stage));
+        let told = self.make(&counts, importance, if recorded.is_some() { f64::INFINITY } else { ELUSIVE }, made)?;
+        let (rare, squares) = recorded.unwrap_or((told.rare, told.squares));
+        let (camera, splats) = made.split_at(self.camera.len());
+        let mut spread = Spread::default();
+        for (cell, paths) in self.places() {
+            spread.place(&counts, paths.map(|path| &camera[path]), importance[cell as usize], rare);
+        }
+        let often = splats.iter().zip(&self.splats).filter(|(made, _)| !made.rare(rare));
+        let splats: f64 = often.map(|(made, (cell, _))| made.count * made.value * made.value * importance[*cell as usize]).sum();
+        Some(spread.at(samples) + splats / self.samples().max(1) as f64 + squares)
+    }
+
+    /// All contributions as a plan makes them; those that it makes less than `elusive` times as densely as the pilot are told by size.
+    fn make(&self, counts: &Counts, importance: &[f64], elusive: f64, made: &mut Vec<Made>) -> Option<Told> {
         let per_sample = 1.0 / self.samples().max(1) as f64;
         let mut moments = Moments::default();
         made.clear();
-        for (block, brought) in self.all() {
-            made.push(counts.made(brought, importance[block as usize], per_sample, &mut moments)?);
+        for (cell, brought) in self.all() {
+            made.push(counts.made(brought, importance[cell as usize], per_sample, elusive, &mut moments)?);
         }
         let rare = moments.rarest(ENOUGH * per_sample);
-        let (camera, splats) = made.split_at(self.camera.len());
-        let mut spread = Spread::default();
-        for (block, paths) in self.places() {
-            spread.place(&counts, paths.map(|path| &camera[path]), importance[block as usize], rare);
-        }
-        let often = splats.iter().zip(&self.splats).filter(|(made, _)| !made.rare(rare));
-        let splats: f64 = often.map(|(made, (block, _))| made.count * made.value * made.value * importance[*block as usize]).sum();
-        Some(spread.at(samples) + splats * per_sample + moments.squares(rare))
+        Some(Told { rare, squares: moments.squares(rare) })
     }
+}
+
+/// What is rare in a plan.
+struct Told {
+    /// Its first bin.
+    rare: usize,
+    /// Its second moment.
+    squares: f64,
 }
 
 /// The counts of a plan.
@@ -257,10 +303,10 @@ impl Counts {
     /// A contribution as the plan makes it, if it does. `moments` take it, `per_sample` being 1 over the pilot's samples, if it is elusive:
     /// where the plan makes such a path so much more seldom than the pilot did that it may never have seen one itself. What the lens sees
     /// directly it sees with every sample.
-    fn made(&self, brought: &Brought, importance: f64, per_sample: f64, moments: &mut Moments) -> Option<Made> {
+    fn made(&self, brought: &Brought, importance: f64, per_sample: f64, elusive: f64, moments: &mut Moments) -> Option<Made> {
         let density = self.density(brought);
         let value = brought.value / density;
-        let elusive = brought.technique.length() > 1 && density < ELUSIVE;
+        let elusive = brought.technique.length() > 1 && density < elusive;
         let bin = elusive.then(|| moments.take(density, value * value * importance, per_sample));
         let join = brought.technique.join();
         (density > 0.0).then_some(Made { value, count: self.of[join as usize], connection: join == Join::Connection, bin })
@@ -281,9 +327,10 @@ mod tests {
     use bidir_kernel::Techniques;
 
     use super::{spread::SLOPE, *};
+    use crate::scene::description::Crop;
 
     fn one_block() -> Evidence {
-        Evidence::new(vec![1.0], 1)
+        Evidence::new(Grid::new(Crop { x: 0, y: 0, width: 1, height: 1 }))
     }
 
     fn brought(value: f64, s: u32, t: u32, shares: [f64; 5]) -> Brought {
@@ -303,7 +350,7 @@ mod tests {
             }
             evidence.end_place(0);
         }
-        let errors = evidence.errors(&[(Stage::of(&Techniques::PATH), 64.0)]);
+        let errors = evidence.errors(&[(Stage::of(&Techniques::PATH), 64.0)], None);
         assert!(errors[0].abs() < 1e-12, "{errors:?}");
     }
 
@@ -318,7 +365,7 @@ mod tests {
                 }
                 evidence.end_place(0);
             }
-            [2.0, 4.0].map(|samples| evidence.errors(&[(Stage::of(&Techniques::PATH), samples)])[0] * 1.01)
+            [2.0, 4.0].map(|samples| evidence.errors(&[(Stage::of(&Techniques::PATH), samples)], None)[0] * 1.01)
         };
         let close = |errors: [f64; 2], expected: [f64; 2]| {
             assert!(errors.iter().zip(expected).all(|(error, expected)| (error - expected).abs() < 1e-9), "{errors:?}");
@@ -336,7 +383,7 @@ mod tests {
             evidence.end_sample();
         }
         evidence.end_place(0);
-        let of = |samples: f64| evidence.errors(&[(Stage::of(&Techniques::PATH), samples)])[0];
+        let of = |samples: f64| evidence.errors(&[(Stage::of(&Techniques::PATH), samples)], None)[0];
         assert!(of(2.0) > of(4.0) && of(4.0) > of(8.0) && of(16.0) <= of(8.0));
         assert!(of(64.0) <= of(16.0) && of(64.0) >= of(16.0) * SLOPE.powi(2));
     }
@@ -353,7 +400,7 @@ mod tests {
             evidence.end_place(0);
         }
         let with = |walks: f64, connection: f64| Stage::of(&Techniques { connection, lens_splat: walks, ..Techniques::NONE });
-        let errors = evidence.errors(&[with(1.0, 1.0), with(0.25, 0.25), with(1.0, 0.5)].map(|stage| (stage, 1e6)));
+        let errors = evidence.errors(&[with(1.0, 1.0), with(0.25, 0.25), with(1.0, 0.5)].map(|stage| (stage, 1e6)), None);
         assert!(errors[0].abs() < 1e-12, "{errors:?}");
         // All four times as bright in every fourth sample: 4 − 1; each of two halves twice as bright in every other: (1 + ½) − 1.
         assert!((errors[1] - 3.0 / 1.01).abs() < 1e-9 && (errors[2] - 0.5 / 1.01).abs() < 1e-9, "{errors:?}");
@@ -373,7 +420,7 @@ mod tests {
         }
         let counts = |light_hit: f64, lens_splat: f64| Stage::of(&Techniques { light_hit, lens_splat, ..Techniques::NONE });
         let plans = [counts(1.0, 1.0), counts(1.0, 0.0), counts(0.0, 0.0), counts(1.0, 2.0)];
-        let errors = evidence.errors(&plans.map(|stage| (stage, 64.0)));
+        let errors = evidence.errors(&plans.map(|stage| (stage, 64.0)), None);
         assert!((errors[1] / errors[0] - 100.0).abs() < 1e-6, "{errors:?}");
         assert!(errors[2].is_infinite());
         // Two splats of each walk's, of which the pilot saw none that the camera found.
@@ -394,7 +441,7 @@ mod tests {
         ab.merge(part(3.0));
         ba.merge(part(1.0));
         let stage = [(Stage::of(&Techniques::PATH), 64.0)];
-        assert_eq!(ab.errors(&stage), ba.errors(&stage));
+        assert_eq!(ab.errors(&stage, None), ba.errors(&stage, None));
         assert_eq!(ab.samples(), 4);
     }
 
@@ -417,6 +464,6 @@ mod tests {
         let expected = of(&[4, 6]);
         assert_eq!((evidence.samples(), evidence.len(), evidence.splats.len()), (10, 10, 10));
         let plan = [(Stage::of(&Techniques::BIDIRECTIONAL), 64.0)];
-        assert_eq!(evidence.errors(&plan), expected.errors(&plan));
+        assert_eq!(evidence.errors(&plan, None), expected.errors(&plan, None));
     }
 }

@@ -67,11 +67,12 @@ fn against(choice: &Choice) -> String {
 
 /// The plan card: what was chosen, what it rests on, and what would change it.
 pub fn card(choice: &Choice) -> Vec<String> {
-    let Choice { chosen, candidates, costs, camera_paths, beyond, joins, plugins, without_plugins } = choice;
+    let Choice { chosen, candidates, costs, camera_paths, watched, beyond, joins, plugins, without_plugins } = choice;
     let mut lines = vec![
         format!("auto: {}", stage(&chosen.stage)),
         format!(
-            "from a pilot of {camera_paths} camera paths, each with a light path; relMSE times samples per pixel about {}",
+            "from a pilot of {camera_paths} camera paths, each with a light path{}; relMSE times samples per pixel about {}",
+            if *watched > 0 { format!(", and {watched} of the render's own, which were watched") } else { String::new() },
             error(chosen)
         ),
         format!(

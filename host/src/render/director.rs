@@ -2,13 +2,13 @@
 
 use std::time::{Duration, Instant};
 
-use bidir_kernel::{Join, Strategy};
+use bidir_kernel::Strategy;
 
-use super::{Job, Status, Target, pilot::Pilot};
+use super::{Job, Status, Target, Told, pilot::Pilot, watch::Watch};
 use crate::{
     plan::{
         Plan, Stage,
-        choice::{Choice, Seen, Until, broadest, choose, open},
+        choice::{Choice, Known, Seen, Until, broadest, choose, is_full, open},
         effects::Effects,
     },
     scene::{
@@ -18,18 +18,25 @@ use crate::{
 };
 
 /// What comes next.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Leg {
     /// How samples are taken.
     pub strategy: Strategy,
     /// The first sample of every pixel that is not taken so.
     pub end: u32,
+    /// What of them the director wants to see.
+    pub watch: Option<Watch>,
 }
 
 /// Says between passes what comes next.
 pub trait Director {
-    /// From the sample on that stands in `status`; `error` estimates the relMSE of what is on the film.
-    fn next(&mut self, scene: &Scene, job: &Job, status: &Status, error: &dyn Fn() -> Option<f64>) -> Leg;
+    /// From the sample on that stands in `status`; `film` tells of what is on it.
+    fn next(&mut self, scene: &Scene, job: &Job, status: &Status, film: &dyn Told) -> Leg;
+
+    /// What it wanted to see, after the pass.
+    fn watched(&mut self, watch: Watch) {
+        let _ = watch;
+    }
 }
 
 /// The job's own strategy from beginning to end.
@@ -37,8 +44,8 @@ pub trait Director {
 pub struct Always;
 
 impl Director for Always {
-    fn next(&mut self, _: &Scene, job: &Job, _: &Status, _: &dyn Fn() -> Option<f64>) -> Leg {
-        Leg { strategy: job.strategy, end: u32::MAX }
+    fn next(&mut self, _: &Scene, job: &Job, _: &Status, _: &dyn Told) -> Leg {
+        Leg { strategy: job.strategy, end: u32::MAX, watch: None }
     }
 }
 
@@ -52,19 +59,19 @@ pub struct Given {
 }
 
 impl Director for Given {
-    fn next(&mut self, _: &Scene, job: &Job, status: &Status, _: &dyn Fn() -> Option<f64>) -> Leg {
+    fn next(&mut self, _: &Scene, job: &Job, status: &Status, _: &dyn Told) -> Leg {
         match self.plan.at(status.samples) {
-            Some((stage, end)) => Leg { strategy: stage.strategy(&self.integrator), end },
-            None => Leg { strategy: job.strategy, end: u32::MAX },
+            Some((stage, end)) => Leg { strategy: stage.strategy(&self.integrator), end, watch: None },
+            None => Leg { strategy: job.strategy, end: u32::MAX, watch: None },
         }
     }
 }
 
 /// The share of a render's time that pilots may take.
-const SHARE: f64 = 0.02;
+const SHARE: f64 = 0.015;
 
 /// Of that, what they look for; the rest is for choosing.
-const LOOKING: f64 = 0.75;
+const LOOKING: f64 = 0.9;
 
 /// Pixels that the first pilot looks at, at least and at most.
 const FIRST: [f64; 2] = [32.0, 1_024.0];
@@ -76,8 +83,18 @@ const PATHS_PER_PIXEL: f64 = 150.0;
 const UNKNOWN: f64 = 256.0;
 
 /// What the render itself saw is held against the pilot when it has taken so many times as long as the pilot, and then whenever it has
-/// taken `AGAIN` times as long.
-const HELD_AGAINST: f64 = 5.0;
+/// taken `AGAIN` times as long. Until the first time it is watched.
+const HELD_AGAINST: f64 = 6.0;
+
+/// From so many samples per pixel on the film tells how bright the image is, and samples are watched.
+const BRIGHT: u32 = 2;
+
+/// Plans with less than this share of the efficiency of what the pilot would choose are not watched for.
+const HOPELESS: f64 = 0.2;
+
+/// A plan that makes every kind of join, and so shows what other plans would bring, is watched first, if the pilot takes it to be at least
+/// so good as the one that it would choose.
+const WATCHED: f64 = 0.5;
 
 /// Samples per pixel from which a film tells its error.
 const TELLING: u32 = 8;
@@ -99,8 +116,14 @@ pub struct Auto {
     again: Duration,
     /// When what the render saw is held against the pilot next.
     held_against: Duration,
-    /// What the render saw, while it had one stage.
+    /// What its first samples brought, if they can be watched.
+    watch: Option<Watch>,
+    /// Whether they are.
+    watching: bool,
+    /// What the render said of its error, while it had one stage.
     seen: Option<Seen>,
+    /// How many times as noisy as told it was while it was watched.
+    before: f64,
     /// Wall-clock time of all pilots.
     pub elapsed: Duration,
 }
@@ -119,7 +142,10 @@ impl Auto {
             pixels: f64::from(crop.width) * f64::from(crop.height),
             again: Duration::MAX,
             held_against: Duration::MAX,
+            watch: None,
+            watching: false,
             seen: None,
+            before: 1.0,
             elapsed: Duration::ZERO,
         }
     }
@@ -148,9 +174,10 @@ impl Auto {
     fn choose(&mut self, job: &Job, from: u32) {
         let under_way = self.plan.last().copied();
         if self.open.len() > 1 {
-            let (evidence, costs) = (self.pilot.evidence(), self.pilot.costs());
+            let (evidence, costs, record) = (self.pilot.evidence(), &self.pilot.costs(), self.watch.as_ref().map(|watch| &watch.record));
+            let known = Known { evidence, costs, record, seen: self.seen.as_ref() };
             // Where nothing varies that was seen, there may be something that was not.
-            self.choice = choose(&self.open, evidence, &costs, self.until(job), under_way.as_ref(), self.seen.as_ref())
+            self.choice = choose(&self.open, &known, self.until(job), under_way.as_ref())
                 .filter(|choice| choice.chosen.error.is_some_and(|error| error > 0.0))
                 .map(|choice| choice.with_plugins(&self.pilot.plugins()));
         }
@@ -163,17 +190,63 @@ impl Auto {
         }
     }
 
+    /// Begins with a plan that can be watched, if there is one that is not much worse than what was chosen; where no light paths are worth
+    /// their price, nothing is tried.
+    fn watch(&mut self) {
+        let Some(stage) = self.plan.stages.last_mut() else { return };
+        if stage.techniques().light_walks() == 0.0 {
+            return;
+        }
+        let full = |stage: &Stage| is_full(stage, &self.open);
+        if let Some(choice) = self.choice.as_ref().filter(|_| !full(stage)) {
+            let best = choice.candidates.iter().find(|candidate| full(&candidate.stage));
+            if let Some(best) = best.filter(|best| best.efficiency() >= WATCHED * choice.chosen.efficiency()) {
+                *stage = Stage { from: stage.from, ..best.stage };
+            }
+        }
+        self.watching = full(stage) && self.open.len() > 1;
+    }
+
+    /// What the next samples are watched for.
+    fn watch_for(&mut self, film: &dyn Told) -> Option<Watch> {
+        self.pilot.see(&film.picture()?);
+        let stage = self.plan.stages.last()?;
+        let watch = match &mut self.watch {
+            Some(watch) => watch,
+            none => {
+                let hopeful = |choice: &Choice| -> Vec<Stage> {
+                    let least = HOPELESS * choice.chosen.efficiency();
+                    choice.candidates.iter().filter(|candidate| candidate.efficiency() >= least).map(|candidate| candidate.stage).collect()
+                };
+                let plans = self.choice.as_ref().map_or_else(|| self.open.clone(), hopeful);
+                none.insert(self.pilot.watch(stage, &plans))
+            }
+        };
+        watch.record.see(self.pilot.evidence());
+        Some(watch.blank())
+    }
+
     /// Holds what the render saw against the pilot. Of a film with several stages nobody knows which it owes its noise to; and where some
     /// kind of join is not made, the noise may be what that would take away.
-    fn hold_against(&mut self, job: &Job, status: &Status, error: &dyn Fn() -> Option<f64>) {
+    fn hold_against(&mut self, job: &Job, status: &Status, film: &dyn Told) {
         let start = Instant::now();
         if let [stage] = *self.plan.stages.as_slice()
-            && Join::ALL.iter().all(|&join| stage.effort(join) > 0.0 || self.open.iter().all(|open| open.effort(join) == 0.0))
-            && let Some(error) = error()
+            && is_full(&stage, &self.open)
         {
-            self.seen = Some(Seen { stage, samples: f64::from(status.samples), error });
+            if let Some(picture) = film.picture() {
+                self.pilot.see(&picture);
+            }
+            let error = if status.samples >= TELLING { film.error() } else { None };
+            let mut seen = error.map(|error| Seen { stage, samples: f64::from(status.samples), error, before: self.before });
+            if let Some((seen, record)) = seen.as_mut().zip(self.watch.as_ref().filter(|_| self.watching).map(|watch| &watch.record)) {
+                // All that is on the film was watched, or about: what it is noisier than told is so whatever the plan.
+                seen.before = seen.times(self.pilot.evidence(), record);
+                self.before = seen.before;
+            }
+            self.seen = seen;
             self.choose(job, status.samples);
         }
+        self.watching = false;
         self.held_against = status.elapsed.mul_f64(AGAIN);
         self.elapsed += start.elapsed();
     }
@@ -182,9 +255,18 @@ impl Auto {
     fn until(&self, job: &Job) -> Until {
         match job.target {
             Target::Samples(samples) => Until::Samples(f64::from(samples)),
-            Target::Time(time) => Until::Nanoseconds(time.as_nanos() as f64 * job.threads as f64 / self.pixels),
+            Target::Time(time) => Until::Nanoseconds(time.as_nanos() as f64 * job.threads.max(1) as f64 / self.pixels),
             Target::Error(_) => Until::Samples(UNKNOWN),
         }
+    }
+
+    /// Seconds that the render is likely to take.
+    fn lasts(&self, job: &Job) -> f64 {
+        let per_pixel = match self.until(job) {
+            Until::Samples(samples) => samples * self.choice.as_ref().map_or(f64::INFINITY, |choice| choice.chosen.cost),
+            Until::Nanoseconds(time) => time,
+        };
+        1e-9 * per_pixel * self.pixels / job.threads.max(1) as f64
     }
 
     /// Looks for the first time, for about as long as a render with this target should.
@@ -193,6 +275,10 @@ impl Auto {
         self.look(scene, job, time, pixels, 0);
         self.again = self.elapsed.mul_f64(2.0 / SHARE);
         self.held_against = self.elapsed.mul_f64(HELD_AGAINST);
+        // What ends sooner would have nothing of it.
+        if self.lasts(job) > 2.0 * self.held_against.as_secs_f64() {
+            self.watch();
+        }
     }
 
     /// How long the first pilot may take on each thread, and how many pixels it may look at.
@@ -207,12 +293,12 @@ impl Auto {
 }
 
 impl Director for Auto {
-    fn next(&mut self, scene: &Scene, job: &Job, status: &Status, error: &dyn Fn() -> Option<f64>) -> Leg {
+    fn next(&mut self, scene: &Scene, job: &Job, status: &Status, film: &dyn Told) -> Leg {
         if self.plan.stages.is_empty() {
             self.begin(scene, job);
         } else if self.open.len() > 1 {
-            if status.elapsed >= self.held_against && status.samples >= TELLING {
-                self.hold_against(job, status, error);
+            if status.elapsed >= self.held_against {
+                self.hold_against(job, status, film);
             }
             if status.elapsed >= self.again {
                 let time = status.elapsed.mul_f64(SHARE).saturating_sub(self.elapsed);
@@ -221,6 +307,13 @@ impl Director for Auto {
             }
         }
         let stage = self.plan.last().copied().unwrap_or(Stage::of(&job.strategy.techniques));
-        Leg { strategy: stage.strategy(&self.integrator), end: u32::MAX }
+        let watch = if self.watching && status.samples >= BRIGHT { self.watch_for(film) } else { None };
+        Leg { strategy: stage.strategy(&self.integrator), end: u32::MAX, watch }
+    }
+
+    fn watched(&mut self, watch: Watch) {
+        if let Some(all) = &mut self.watch {
+            all.record.merge(&watch.record);
+        }
     }
 }

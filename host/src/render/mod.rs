@@ -9,6 +9,7 @@ mod numbers;
 mod passes;
 mod pilot;
 mod share;
+mod watch;
 
 use std::{
     sync::atomic::{AtomicBool, Ordering},
@@ -27,7 +28,8 @@ pub use features::features;
 pub use numbers::{Numbers, Scrambled, Sobol, Source};
 pub use passes::pass_end;
 pub(crate) use pilot::{Nobody, scattered};
-pub use share::Canvas;
+pub use share::{Canvas, Told};
+pub use watch::Watch;
 
 use share::{Share, Stop, Worked};
 
@@ -109,12 +111,13 @@ pub fn directed<S: Canvas>(
         Target::Time(_) | Target::Error(_) => u32::MAX,
     };
     while status.samples < last {
-        let leg = director.next(scene, job, &status, &|| film.error());
+        let mut leg = director.next(scene, job, &status, film);
         status.elapsed = start.elapsed();
         let job = &Job { strategy: leg.strategy, ..*job };
+        let watch = &mut leg.watch;
         let end = pass_end(status.samples).min(last).min(leg.end).min(affordable(&status, job.target, pace));
         let before = (status.samples, status.elapsed);
-        let Some(claimed) = run(scene, film, job, end, Some(interrupt), &mut status) else {
+        let Some(claimed) = run(scene, film, job, end, Some(interrupt), watch, &mut status) else {
             status.failed = true;
             return status;
         };
@@ -125,11 +128,14 @@ pub fn directed<S: Canvas>(
         }
         if claimed < end || interrupt.load(Ordering::Relaxed) {
             // Finish the sample that some pixels have already.
-            run(scene, film, job, claimed, None, &mut status);
+            run(scene, film, job, claimed, None, watch, &mut status);
             status.samples = if status.fault.is_some() { status.samples } else { claimed };
             status.interrupted = true;
         } else {
             status.samples = end;
+        }
+        if let Some(watch) = leg.watch {
+            director.watched(watch);
         }
         status.elapsed = start.elapsed();
         pace = Some((status.elapsed - before.1).as_secs_f64() / f64::from((status.samples - before.0).max(1)));
@@ -158,11 +164,21 @@ fn affordable(status: &Status, target: Target, pace: Option<f64>) -> u32 {
 }
 
 /// Renders every unit whose sample is below `end`; returns the samples of which a unit was begun. `None` if no thread could do any work.
-fn run<S: Canvas>(scene: &Scene, film: &S, job: &Job, end: u32, interrupt: Option<&AtomicBool>, status: &mut Status) -> Option<u32> {
+/// `watch` takes what the samples bring, if the canvas can tell.
+fn run<S: Canvas>(
+    scene: &Scene,
+    film: &S,
+    job: &Job,
+    end: u32,
+    interrupt: Option<&AtomicBool>,
+    watch: &mut Option<Watch>,
+    status: &mut Status,
+) -> Option<u32> {
     let faulted = AtomicBool::new(false);
     let stop = Stop { interrupt, faulted: &faulted };
+    let share = Share { scene, film, job, end, stop, watch: watch.as_ref() };
     let workers: Vec<Option<Worked>> = std::thread::scope(|scope| {
-        let workers: Vec<_> = (0..job.threads.max(1)).map(|_| scope.spawn(|| S::share(Share { scene, film, job, end, stop }))).collect();
+        let workers: Vec<_> = (0..job.threads.max(1)).map(|_| scope.spawn(|| S::share(share))).collect();
         workers.into_iter().map(|worker| worker.join().ok()).collect()
     });
     let mut begun = status.samples;
@@ -173,6 +189,9 @@ fn run<S: Canvas>(scene: &Scene, film: &S, job: &Job, end: u32, interrupt: Optio
         status.rays += worked.rays;
         status.quarantine.merge(worked.quarantine);
         status.fault = status.fault.take().or(worked.fault);
+        if let Some((all, one)) = watch.as_mut().zip(worked.watch) {
+            all.record.merge(&one.record);
+        }
     }
     Some(begun)
 }

@@ -15,13 +15,16 @@ use super::{
     Job,
     numbers::{Apart, Numbers, Sobol, Source},
     storage,
+    watch::Watch,
 };
 use crate::{
     film::{Exposure, Film, Store, TileBuffer},
+    image::Image,
     plan::{
+        Stage,
         choice::Costs,
         effects::Effects,
-        evidence::{Brought, Evidence, shares},
+        evidence::{Brought, Evidence, Grid, shares},
         joins::possible,
         plugins::Measured,
     },
@@ -37,16 +40,15 @@ use crate::{
 const ROUND: u32 = 16;
 
 /// Samples of each of them, half of them in either run.
-const SAMPLES: u32 = 32;
+const SAMPLES: usize = 32;
 
-/// Of these, how many costs are measured with.
-const TIMED: usize = 2;
+/// Of these, how many costs are measured with, and in one of how many rounds: beside few samples, handing them to the film would seem
+/// dearer than it is.
+const TIMED: usize = 8;
+const TIMED_ROUNDS: usize = 4;
 
 /// Pixels of a round that are sampled before the clock is looked at.
-const WARMING: usize = 1;
-
-/// About how many blocks the image has.
-const BLOCKS: f64 = 256.0;
+const WARMING: usize = 2;
 
 /// The most contributions of camera paths that are kept: memory, and time to weigh plans by.
 const MOST_KEPT: usize = 1 << 18;
@@ -60,7 +62,7 @@ pub struct Pilot {
     evidence: Evidence,
     spent: Spent,
     calls: Metering,
-    blocks: Blocks,
+    crop: Crop,
     ways: Ways,
     small: FilmSettings,
     rounds: u64,
@@ -87,53 +89,31 @@ struct Part {
     calls: Metering,
 }
 
-/// The image in blocks.
-#[derive(Clone, Copy, Debug)]
-struct Blocks {
-    crop: Crop,
-    edge: u32,
-    columns: u32,
-}
-
-impl Blocks {
-    fn new(crop: Crop) -> Self {
-        let pixels = f64::from(crop.width) * f64::from(crop.height);
-        let edge = (pixels / BLOCKS).sqrt().ceil().max(1.0) as u32;
-        Self { crop, edge, columns: crop.width.div_ceil(edge) }
-    }
-
-    /// Evidence of an image in these blocks.
-    fn evidence(&self) -> Evidence {
-        let rows = self.crop.height.div_ceil(self.edge);
-        let length = |index: u32, whole: u32| f64::from(self.edge.min(whole - index * self.edge));
-        let of = |row, column| length(row, self.crop.height) * length(column, self.crop.width);
-        let sizes = (0..rows).flat_map(|row| (0..self.columns).map(move |column| (row, column))).map(|(row, column)| of(row, column));
-        Evidence::new(sizes.collect(), self.columns as usize)
-    }
-
-    /// The block of a raster position, if it is within the window.
-    fn at(&self, raster: Vec2) -> Option<u32> {
-        let (x, y) = (f64::from(raster.x) - f64::from(self.crop.x), f64::from(raster.y) - f64::from(self.crop.y));
-        let inside = x >= 0.0 && y >= 0.0 && x < f64::from(self.crop.width) && y < f64::from(self.crop.height);
-        inside.then(|| y as u32 / self.edge * self.columns + x as u32 / self.edge)
-    }
-}
-
 impl Pilot {
     /// Nothing seen yet. Techniques that cannot make a path in the scene are left out.
     pub fn new(settings: &FilmSettings, effects: &Effects, max_depth: Option<u32>) -> Self {
         let techniques = possible(effects, max_depth, &Techniques::BIDIRECTIONAL);
-        let blocks = Blocks::new(settings.crop);
-        let Crop { x, y, width, height } = settings.crop;
-        let crop = Crop { x, y, width: width.min(FILM), height: height.min(FILM) };
-        let small = FilmSettings { crop, ..settings.clone() };
+        let crop = settings.crop;
+        let part = Crop { width: crop.width.min(FILM), height: crop.height.min(FILM), ..crop };
+        let small = FilmSettings { crop: part, ..settings.clone() };
         let ways = Ways::of(&techniques);
-        Self { evidence: blocks.evidence(), spent: Spent::default(), calls: Metering::default(), blocks, ways, small, rounds: 0 }
+        let evidence = Evidence::new(Grid::new(crop));
+        Self { evidence, spent: Spent::default(), calls: Metering::default(), crop, ways, small, rounds: 0 }
     }
 
     /// What was seen.
     pub fn evidence(&self) -> &Evidence {
         &self.evidence
+    }
+
+    /// How bright the image is, as far as a noisy picture of it tells.
+    pub fn see(&mut self, image: &Image) {
+        self.evidence.see(image);
+    }
+
+    /// What the render's own samples by the stage `under_way` are watched for, so that these plans are told apart.
+    pub fn watch(&self, under_way: &Stage, plans: &[Stage]) -> Watch {
+        Watch { record: self.evidence.record(under_way, plans), grid: *self.evidence.grid() }
     }
 
     /// Looks on, on all threads, until each has spent that much time or all together have looked at that many pixels; a round at least.
@@ -175,24 +155,27 @@ impl Pilot {
         let view = View::new(scene, job.strictness);
         let strategy = Strategy { techniques: self.ways.all(), heuristic: Heuristic::Balance, ..job.strategy };
         let (mut camera_path, mut light_path) = (storage(&strategy), storage(&strategy));
-        let mut kept = Kept { evidence: self.blocks.evidence(), blocks: self.blocks, weighed: (1.0, ByJoin::NONE) };
+        let grid = *self.evidence.grid();
+        let mut kept = Kept { evidence: Evidence::new(grid), grid, weighed: (1.0, ByJoin::NONE) };
         let mut timing = Timing { spent: Spent::default(), film: Film::new(&self.small).ok()?, crop: self.small.crop };
         let mut calls = Metering::of(view.sandbox());
         // The render's own numbers, of a seed that is not the render's.
-        let sources: Vec<N> = (0..SAMPLES).map(|index| N::new(!job.seed, index)).collect();
-        for round in rounds {
+        let sources: Vec<N> = (0..SAMPLES).map(|index| N::new(!job.seed, index as u32)).collect();
+        for (number, round) in rounds.enumerate() {
             view.sandbox().begin_tile(round);
-            let places: Vec<_> = (0..ROUND).map(|i| scattered(round * u64::from(ROUND) + u64::from(i), self.blocks.crop)).collect();
+            let places: Vec<_> = (0..ROUND).map(|i| scattered(round * u64::from(ROUND) + u64::from(i), self.crop)).collect();
             for &place in &places {
                 for source in &sources {
                     let (mut numbers, raster) = begun(source, place);
                     sample(&view, &strategy, &mut numbers, raster, &mut camera_path, &mut light_path, &mut kept);
                     kept.evidence.end_sample();
                 }
-                let block = self.blocks.at(Vec2::new(place[0] as f32 + 0.5, place[1] as f32 + 0.5)).unwrap_or(0);
-                kept.evidence.end_place(block);
+                let cell = grid.at(Vec2::new(place[0] as f32 + 0.5, place[1] as f32 + 0.5)).unwrap_or(0);
+                kept.evidence.end_place(cell);
             }
-            timing.round(&view, &strategy, &self.ways, &places, &sources[..TIMED]);
+            if number % TIMED_ROUNDS == 0 {
+                timing.round(&view, &strategy, &self.ways, &places, &sources[..TIMED]);
+            }
             calls.round(&view, &strategy, &self.ways, &places, &sources[..calls::SAMPLES]);
             if view.sandbox().faulted() {
                 return None;
@@ -224,19 +207,18 @@ pub(crate) fn scattered(turn: u64, Crop { x, y, width, height }: Crop) -> [u32; 
 /// Takes what the pilot's samples bring.
 struct Kept {
     evidence: Evidence,
-    blocks: Blocks,
+    grid: Grid,
     /// How the next contribution was weighed.
     weighed: (f64, ByJoin),
 }
 
-impl Kept {
-    fn brought(&self, contribution: &Contribution) -> Option<Brought> {
-        let Contribution { value, weight, technique } = *contribution;
-        let value = f64::from(value.mean()) * f64::from(weight);
-        let shares = shares(technique, self.weighed.0, |join| self.weighed.1.of(join));
-        let whole = value.is_finite() && value != 0.0 && shares.iter().all(|share| share.is_finite());
-        whole.then_some(Brought { value, technique, shares })
-    }
+/// A contribution that was weighed so, if it brings something.
+pub(super) fn brought(contribution: &Contribution, (own, rivals): &(f64, ByJoin)) -> Option<Brought> {
+    let Contribution { value, weight, technique } = *contribution;
+    let value = f64::from(value.mean()) * f64::from(weight);
+    let shares = shares(technique, *own, |join| rivals.of(join));
+    let whole = value.is_finite() && value != 0.0 && shares.iter().all(|share| share.is_finite());
+    whole.then_some(Brought { value, technique, shares })
 }
 
 impl bidir_kernel::Film for Kept {
@@ -247,14 +229,14 @@ impl bidir_kernel::Film for Kept {
     }
 
     fn add(&mut self, contribution: Contribution) {
-        if let Some(brought) = self.brought(&contribution) {
+        if let Some(brought) = brought(&contribution, &self.weighed) {
             self.evidence.add(brought);
         }
     }
 
     fn splat(&mut self, raster: Vec2, contribution: Contribution) {
-        if let (Some(brought), Some(block)) = (self.brought(&contribution), self.blocks.at(raster)) {
-            self.evidence.splat(block, brought);
+        if let (Some(brought), Some(cell)) = (brought(&contribution, &self.weighed), self.grid.at(raster)) {
+            self.evidence.splat(cell, brought);
         }
     }
 }

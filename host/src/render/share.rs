@@ -12,9 +12,11 @@ use super::{
     Job, Numbers,
     numbers::{Apart, Sobol, Source},
     storage,
+    watch::{Watch, Watched},
 };
 use crate::{
     film::{Both, Exposure, Film, Pyramid, Store},
+    image::Image,
     plugin::{Fault, Quarantine},
     scene::{
         Scene,
@@ -23,27 +25,51 @@ use crate::{
     },
 };
 
-/// What can be rendered onto. Sampling is compiled here, once for each, and not again wherever something is rendered.
-pub trait Canvas: Store + Sized {
-    /// One thread's share.
-    fn share(share: Share<'_, Self>) -> Worked;
-
-    /// What it tells of its own relMSE; `None` if it cannot, or cannot yet.
+/// What a canvas tells of what is on it.
+pub trait Told {
+    /// Its own relMSE; `None` if it cannot tell, or cannot yet.
     fn error(&self) -> Option<f64> {
         None
+    }
+
+    /// The picture so far, if it is one.
+    fn picture(&self) -> Option<Image> {
+        None
+    }
+}
+
+/// What can be rendered onto. Sampling is compiled here, once for each, and not again wherever something is rendered.
+pub trait Canvas: Store + Told + Sized {
+    /// One thread's share.
+    fn share(share: Share<'_, Self>) -> Worked;
+}
+
+impl Told for Film {
+    fn error(&self) -> Option<f64> {
+        self.noise().map(|noise| noise.relmse)
+    }
+
+    fn picture(&self) -> Option<Image> {
+        Some(self.develop())
+    }
+}
+
+impl Told for Pyramid {}
+
+impl Told for Both<'_> {
+    fn error(&self) -> Option<f64> {
+        self.film.error()
     }
 }
 
 impl Canvas for Film {
     fn share(share: Share<'_, Self>) -> Worked {
-        match share.job.numbers {
-            Numbers::Sobol => share.with::<Sobol>(),
-            Numbers::Independent => share.with::<Apart>(),
+        match (share.job.numbers, share.watch) {
+            (Numbers::Sobol, None) => share.with::<Sobol>(),
+            (Numbers::Sobol, Some(watch)) => share.watched::<Sobol>(watch.blank()),
+            (Numbers::Independent, None) => share.with::<Apart>(),
+            (Numbers::Independent, Some(watch)) => share.watched::<Apart>(watch.blank()),
         }
-    }
-
-    fn error(&self) -> Option<f64> {
-        self.noise().map(|noise| noise.relmse)
     }
 }
 
@@ -64,10 +90,6 @@ impl Canvas for Both<'_> {
             Numbers::Sobol => By::<_, Sobol>(share, PhantomData).run(Full {}),
             Numbers::Independent => By::<_, Apart>(share, PhantomData).run(Full {}),
         }
-    }
-
-    fn error(&self) -> Option<f64> {
-        self.film.error()
     }
 }
 
@@ -104,6 +126,8 @@ pub struct Worked {
     pub(super) rays: RayCounts,
     pub(super) quarantine: Quarantine,
     pub(super) fault: Option<Fault>,
+    /// What its samples brought, where they were watched.
+    pub(super) watch: Option<Watch>,
 }
 
 /// One thread's share of a render.
@@ -114,6 +138,8 @@ pub struct Share<'a, S> {
     pub(super) job: &'a Job,
     pub(super) end: u32,
     pub(super) stop: Stop<'a>,
+    /// What is watched for; not every canvas does.
+    pub(super) watch: Option<&'a Watch>,
 }
 
 /// A share with its kind of numbers.
@@ -123,8 +149,32 @@ impl<S: Store, N: Source> Task for By<'_, S, N> {
     type Output = Worked;
 
     fn run<P: Preset>(self, preset: P) -> Worked {
-        let view = View::with(self.0.scene, preset, self.0.job.strictness);
-        self.0.work::<N, P>(&view)
+        let Share { scene, job, .. } = self.0;
+        let view = View::with(scene, preset, job.strictness);
+        let (mut camera_path, mut light_path) = (storage(&job.strategy), storage(&job.strategy));
+        self.0.work::<N, _>(&view, |numbers: &mut N::OfPixel<'_>, raster, buffer: &mut S::Buffer| {
+            sample(&view, &job.strategy, numbers, raster, &mut camera_path, &mut light_path, buffer);
+        })
+    }
+}
+
+/// A share that is watched.
+struct Watching<'a, S, N>(Share<'a, S>, Watch, PhantomData<N>);
+
+impl<S: Store, N: Source> Task for Watching<'_, S, N> {
+    type Output = Worked;
+
+    fn run<P: Preset>(self, preset: P) -> Worked {
+        let Self(share, mut watch, _) = self;
+        let Share { scene, job, .. } = share;
+        let view = View::with(scene, preset, job.strictness);
+        let (mut camera_path, mut light_path) = (storage(&job.strategy), storage(&job.strategy));
+        let worked = share.work::<N, _>(&view, |numbers: &mut N::OfPixel<'_>, raster, buffer: &mut S::Buffer| {
+            let mut film = Watched::new(buffer, &mut watch, raster);
+            sample(&view, &job.strategy, numbers, raster, &mut camera_path, &mut light_path, &mut film);
+            watch.record.end_sample();
+        });
+        Worked { watch: Some(watch), ..worked }
     }
 }
 
@@ -133,12 +183,16 @@ impl<S: Store> Share<'_, S> {
         N::with_preset(self.scene, self.job.strategy.effects(), By::<_, N>(self, PhantomData))
     }
 
+    fn watched<N: Source>(self, watch: Watch) -> Worked {
+        N::with_preset(self.scene, self.job.strategy.effects(), Watching::<_, N>(self, watch, PhantomData))
+    }
+
+    /// Takes every sample by `sample`.
     #[inline(always)]
-    fn work<N: Source, P: Preset>(&self, view: &View<P>) -> Worked {
+    fn work<N: Source, P: Preset>(&self, view: &View<P>, mut sample: impl FnMut(&mut N::OfPixel<'_>, Vec2, &mut S::Buffer)) -> Worked {
         let Self { film, job, end, stop, .. } = *self;
         let _guard = Guard(film);
         let clock = cpu_time::ThreadTime::now();
-        let (mut camera_path, mut light_path) = (storage(&job.strategy), storage(&job.strategy));
         let mut begun = 0;
         while !stop.asked() {
             let Some(mut buffer) = film.claim(end) else { break };
@@ -153,7 +207,7 @@ impl<S: Store> Share<'_, S> {
                 let [dx, dy] = numbers.next_pair();
                 let raster = Vec2::new(x as f32 + dx, y as f32 + dy);
                 buffer.begin(raster);
-                sample(view, &job.strategy, &mut numbers, raster, &mut camera_path, &mut light_path, &mut buffer);
+                sample(&mut numbers, raster, &mut buffer);
                 if view.faulted() {
                     // Nothing of this tile is known to be whole. It is handed in empty, so that the tiles after it still arrive.
                     stop.faulted.store(true, Ordering::Relaxed);
@@ -165,6 +219,14 @@ impl<S: Store> Share<'_, S> {
             film.commit(buffer);
         }
         let (quarantine, fault) = (view.sandbox().quarantine(), view.sandbox().fault());
-        Worked { begun, cpu: clock.elapsed(), rays: view.rays(), quarantine, fault }
+        Worked { begun, cpu: clock.elapsed(), rays: view.rays(), quarantine, fault, watch: None }
     }
 }
+
+impl<S> Clone for Share<'_, S> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<S> Copy for Share<'_, S> {}

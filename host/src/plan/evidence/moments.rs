@@ -31,6 +31,11 @@ impl Moments {
         (exponent + Self::BINS as i32 / 2).clamp(0, Self::BINS as i32 - 1) as usize
     }
 
+    /// The least square in a bin.
+    pub(super) fn least(bin: usize) -> f64 {
+        2.0_f64.powi(bin as i32 - Self::BINS as i32 / 2)
+    }
+
     /// An elusive contribution: its square, and how much more densely the plan makes it than the pilot did. Returns its bin.
     pub(super) fn take(&mut self, density: f64, square: f64, per_sample: f64) -> u8 {
         let at = Self::bin(square);

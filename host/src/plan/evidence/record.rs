@@ -1,0 +1,193 @@
+//! What a render's own samples bring that is too rare for a pilot.
+//!
+//! A pilot has a fiftieth of a render's time; what it saw a few times or never is often most of the error, and a plan may look good for no
+//! other reason. The render itself makes such contributions as soon, and what it makes is not lost: it is on the film. So its first
+//! samples are watched, and of every contribution is asked what each plan would have made of it: one that is larger than most that the
+//! pilot saw of that plan adds to that plan's second moment.
+
+use std::sync::Arc;
+
+use bidir_kernel::Join;
+
+use super::{Brought, Evidence, moments::Moments};
+use crate::plan::Stage;
+
+/// Second moments, for every plan, of the contributions that are rare in it, from samples by the plan under way.
+#[derive(Clone, Debug)]
+pub struct Record {
+    plans: Vec<Rare>,
+    /// The least square that is rare in any plan, for a path that was made by one kind of join alone.
+    least: [f64; Join::COUNT],
+    importance: Arc<[f64]>,
+    samples: usize,
+}
+
+/// What a plan makes seldom.
+#[derive(Clone, Debug)]
+struct Rare {
+    stage: Stage,
+    /// How many times as often as the plan under way it makes each kind of join.
+    counts: [f64; Join::COUNT],
+    /// The first bin of what is rare, and the least square there.
+    from: usize,
+    least: f64,
+    squares: f64,
+    /// Something was seen that it never makes.
+    misses: bool,
+}
+
+impl Record {
+    /// Nothing seen yet, of samples by the stage `under_way`; what is rare in each plan begins at that bin.
+    pub(super) fn new(under_way: &Stage, plans: impl Iterator<Item = (Stage, usize)>, importance: Vec<f64>) -> Self {
+        let rare = |(stage, from): (Stage, usize)| {
+            let times = |join| if under_way.effort(join) > 0.0 { stage.effort(join) / under_way.effort(join) } else { 0.0 };
+            Rare { stage, counts: Join::ALL.map(times), from, least: Moments::least(from), squares: 0.0, misses: false }
+        };
+        let plans: Vec<Rare> = plans.map(rare).collect();
+        let least = |join| plans.iter().map(|plan| plan.least * plan.counts[join] * plan.counts[join]).fold(f64::INFINITY, f64::min);
+        Self { least: std::array::from_fn(least), plans, importance: importance.into(), samples: 0 }
+    }
+
+    /// A contribution to a cell of the image.
+    pub fn take(&mut self, cell: u32, brought: &Brought) {
+        let square = brought.value * brought.value * self.importance[cell as usize];
+        // Whatever the plan, it makes a path at least as densely as by one of its kinds of join.
+        if brought.shares.iter().zip(self.least).any(|(share, least)| square < least * share * share) {
+            return;
+        }
+        let seen = brought.technique.length() <= 1;
+        for plan in &mut self.plans {
+            let density: f64 = brought.shares.iter().zip(plan.counts).map(|(share, count)| share * count).sum();
+            if square >= plan.least * density * density {
+                match density > 0.0 {
+                    false => plan.misses = true,
+                    // What the lens sees directly it sees with every sample.
+                    true if !seen => plan.squares += square / density,
+                    true => (),
+                }
+            }
+        }
+    }
+
+    /// A camera path and its light paths are done.
+    pub fn end_sample(&mut self) {
+        self.samples += 1;
+    }
+
+    /// Camera paths.
+    pub fn samples(&self) -> usize {
+        self.samples
+    }
+
+    /// The same, with nothing seen.
+    pub fn blank(&self) -> Self {
+        let blank = |plan: &Rare| Rare { squares: 0.0, misses: false, ..plan.clone() };
+        Self { plans: self.plans.iter().map(blank).collect(), importance: self.importance.clone(), samples: 0, ..*self }
+    }
+
+    /// From now on, the image is as bright as that.
+    pub fn see(&mut self, evidence: &Evidence) {
+        self.importance = evidence.importance().into();
+    }
+
+    /// Takes in what was seen elsewhere by the same plan.
+    pub fn merge(&mut self, other: &Self) {
+        for (own, other) in self.plans.iter_mut().zip(&other.plans) {
+            own.squares += other.squares;
+            own.misses |= other.misses;
+        }
+        self.samples += other.samples;
+    }
+
+    /// Whether that plan was watched for, or nothing was watched.
+    pub fn knows(&self, stage: &Stage) -> bool {
+        self.samples == 0 || self.of(stage).is_some()
+    }
+
+    /// The first bin of what is rare in a plan, and its second moment per camera path, infinite if the plan missed something;
+    /// `None` where nobody watched for that plan.
+    pub(super) fn of(&self, stage: &Stage) -> Option<(usize, f64)> {
+        let plan = self.plans.iter().find(|plan| plan.stage.techniques() == stage.techniques()).filter(|_| self.samples > 0)?;
+        Some((plan.from, if plan.misses { f64::INFINITY } else { plan.squares / self.samples as f64 }))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use bidir_kernel::{Technique, Techniques};
+
+    use super::*;
+
+    const ALL: Techniques = Techniques { light_hit: 1.0, next_event: 1.0, connection: 1.0, lens_splat: 1.0, lens_hit: 0.0 };
+
+    /// Of one cell, whose squared errors count once; all squares of at least 1 are rare.
+    fn record(under_way: Techniques, plans: &[Techniques]) -> Record {
+        let plans = plans.iter().map(|plan| (Stage::of(plan), (0..).find(|bin| Moments::least(*bin) >= 1.0).unwrap_or(0)));
+        Record::new(&Stage::of(&under_way), plans, vec![1.0])
+    }
+
+    /// What samples by that plan bring of a path that all kinds of join together make with density 1, each as often as `shares` says.
+    fn brought(value: f64, shares: [f64; 5], under_way: &Techniques) -> Brought {
+        let efforts = Join::ALL.map(|join| shares[join as usize] * under_way.effort(join));
+        let density: f64 = efforts.iter().sum();
+        Brought { value: value / density, technique: Technique { s: 1, t: 3 }, shares: efforts.map(|effort| effort / density) }
+    }
+
+    fn squares(record: &Record, plan: Techniques) -> f64 {
+        record.of(&Stage::of(&plan)).expect("a plan that is watched for").1
+    }
+
+    #[test]
+    fn whatever_plan_is_under_way_tells_the_same_of_every_plan() {
+        let few = Techniques { connection: 0.25, lens_splat: 0.5, ..ALL };
+        let plans = [ALL, few, Techniques::PATH, Techniques { next_event: 0.0, ..ALL }];
+        let path = (2.0, [0.1, 0.2, 0.3, 0.4, 0.0]);
+        for under_way in [ALL, few] {
+            let mut record = record(under_way, &plans);
+            let density: f64 = Join::ALL.iter().map(|&join| path.1[join as usize] * under_way.effort(join)).sum();
+            // As often as the plan under way makes it, in a hundred samples.
+            let times = 100.0 * density;
+            for _ in 0..times.round() as u32 {
+                record.take(0, &brought(path.0, path.1, &under_way));
+            }
+            (0..100).for_each(|_| record.end_sample());
+            for plan in plans {
+                let made: f64 = Join::ALL.iter().map(|&join| path.1[join as usize] * plan.effort(join)).sum();
+                let found = squares(&record, plan);
+                assert!((found * made / (path.0 * path.0) - times.round() / times).abs() < 1e-9, "{plan:?}: {found}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_small_in_a_plan_is_left_to_the_pilot() {
+        let mut record = record(ALL, &[ALL, Techniques::PATH]);
+        // 0.9 by all, 9 by the path tracer, which makes it a tenth as often.
+        record.take(0, &brought(0.9, [0.1, 0.0, 0.0, 0.9, 0.0], &ALL));
+        record.end_sample();
+        assert_eq!(squares(&record, ALL), 0.0);
+        assert!((squares(&record, Techniques::PATH) - 8.1).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_plan_that_cannot_make_what_was_seen_misses_it() {
+        let mut record = record(ALL, &[ALL, Techniques::PATH]);
+        record.take(0, &brought(0.5, [0.0, 0.0, 1.0, 0.0, 0.0], &ALL));
+        record.end_sample();
+        assert_eq!([ALL, Techniques::PATH].map(|plan| squares(&record, plan)), [0.0, f64::INFINITY]);
+    }
+
+    #[test]
+    fn parts_of_two_threads_are_one() {
+        let whole = record(ALL, &[ALL]);
+        assert!(whole.of(&Stage::of(&ALL)).is_none() && whole.knows(&Stage::of(&Techniques::PATH)));
+        let (mut a, mut b) = (whole.blank(), whole.blank());
+        for (part, value) in [(&mut a, 2.0), (&mut b, 4.0)] {
+            part.take(0, &brought(value, [0.5, 0.5, 0.0, 0.0, 0.0], &ALL));
+            part.end_sample();
+        }
+        a.merge(&b);
+        assert_eq!((squares(&a, ALL), a.samples()), (10.0, 2));
+        assert!(!a.knows(&Stage::of(&Techniques::PATH)));
+    }
+}
