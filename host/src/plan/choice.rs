@@ -398,4 +398,22 @@ mod tests {
         assert_eq!([1.0, 0.5, 0.0, 2.0].map(|under_way| after(1_000, under_way)), [1.0, 0.5, 1.0, 1.0]);
         assert_eq!([1.0, 0.5, 0.0, 2.0].map(|under_way| after(1_000_000, under_way)), [1.0; 4]);
     }
+
+    #[test]
+    fn a_plan_that_makes_every_kind_of_join_is_left_for_one_that_is_clearly_better() {
+        let candidate = |walks: f64, connection: f64, error| Candidate {
+            stage: Stage::of(&Techniques { lens_splat: walks, connection, ..Techniques::PATH }),
+            error: Some(error),
+            cost: 100.0,
+        };
+        let open = [[1.0, 1.0], [1.0, 0.0], [0.0, 0.0]].map(|[walks, connection]| candidate(walks, connection, 1.0).stage);
+        assert_eq!(open.map(|stage| is_full(&stage, &open)), [true, false, false]);
+        // After so many camera paths that little is left to chance.
+        let best = |errors: [f64; 3]| {
+            let all = [0, 1, 2].map(|i| Candidate { stage: open[i], ..candidate(0.0, 0.0, errors[i]) });
+            let chosen = settled(&all, 1_000_000, |_| false, |candidate| is_full(&candidate.stage, &open)).unwrap().stage;
+            open.iter().position(|stage| *stage == chosen)
+        };
+        assert_eq!([[1.0, 0.97, 2.0], [1.0, 0.9, 2.0], [1.0, 2.0, 0.9], [1.0, 2.0, 0.7]].map(best), [Some(0), Some(1), Some(0), Some(2)]);
+    }
 }

@@ -243,7 +243,7 @@ impl Evidence {
     }
 
     /// All contributions as a plan makes them; those that it makes less than `elusive` times as densely as the pilot are told by size.
-    fn make(&self, counts: &Counts, importance: &[f64], elusive: f64, made: &mut Vec<Made>) -> Option<Told> {
+    fn make(&self, counts: &Counts, importance: &[f64], elusive: f64, made: &mut Vec<Made>) -> Option<Rarest> {
         let per_sample = 1.0 / self.samples().max(1) as f64;
         let mut moments = Moments::default();
         made.clear();
@@ -251,12 +251,12 @@ impl Evidence {
             made.push(counts.made(brought, importance[cell as usize], per_sample, elusive, &mut moments)?);
         }
         let rare = moments.rarest(ENOUGH * per_sample);
-        Some(Told { rare, squares: moments.squares(rare) })
+        Some(Rarest { rare, squares: moments.squares(rare) })
     }
 }
 
 /// What is rare in a plan.
-struct Told {
+struct Rarest {
     /// Its first bin.
     rare: usize,
     /// Its second moment.
