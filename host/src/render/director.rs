@@ -124,7 +124,7 @@ pub struct Auto {
     seen: Option<Seen>,
     /// How many times as noisy as told it was while it was watched.
     before: f64,
-    /// Wall-clock time of all pilots.
+    /// Wall-clock time of all pilots, and of looking at what the render brought.
     pub elapsed: Duration,
 }
 
@@ -209,6 +209,7 @@ impl Auto {
 
     /// What the next samples are watched for.
     fn watch_for(&mut self, film: &dyn Told) -> Option<Watch> {
+        let start = Instant::now();
         self.pilot.see(&film.picture()?);
         let stage = self.plan.stages.last()?;
         let watch = match &mut self.watch {
@@ -223,7 +224,9 @@ impl Auto {
             }
         };
         watch.record.see(self.pilot.evidence());
-        Some(watch.blank())
+        let watch = watch.blank();
+        self.elapsed += start.elapsed();
+        Some(watch)
     }
 
     /// Holds what the render saw against the pilot. Of a film with several stages nobody knows which it owes its noise to; and where some

@@ -1,6 +1,6 @@
 //! What a render's own samples bring that is too rare for a pilot.
 //!
-//! A pilot has a fiftieth of a render's time; what it saw a few times or never is often most of the error, and a plan may look good for no
+//! A pilot has a small part of a render's time; what it saw a few times or never is often most of the error, and a plan may look good for no
 //! other reason. The render itself makes such contributions as soon, and what it makes is not lost: it is on the film. So its first
 //! samples are watched, and of every contribution is asked what each plan would have made of it: one that is larger than most that the
 //! pilot saw of that plan adds to that plan's second moment.
@@ -55,16 +55,14 @@ impl Record {
         if brought.shares.iter().zip(self.least).any(|(share, least)| square < least * share * share) {
             return;
         }
+        // What the lens sees directly it sees with every sample.
         let seen = brought.technique.length() <= 1;
         for plan in &mut self.plans {
             let density: f64 = brought.shares.iter().zip(plan.counts).map(|(share, count)| share * count).sum();
-            if square >= plan.least * density * density {
-                match density > 0.0 {
-                    false => plan.misses = true,
-                    // What the lens sees directly it sees with every sample.
-                    true if !seen => plan.squares += square / density,
-                    true => (),
-                }
+            if density == 0.0 {
+                plan.misses = true;
+            } else if !seen && square >= plan.least * density * density {
+                plan.squares += square / density;
             }
         }
     }
