@@ -60,7 +60,7 @@ fn a_light_in_a_folder_of_plugins_is_right_and_says_so_as_json() {
 
 #[test]
 fn a_mistake_has_status_3_a_sentence_and_a_case_that_shows_it_again() {
-    let output = check(&[&wrong(), "--set", "mistake=3", "--json"]);
+    let output = check(&[&wrong(), "--set", "mistake=3", "--set", "alpha=0.8", "--set", "albedo=1", "--json"]);
     assert_eq!(output.status.code(), Some(3), "{}", text(&output.stderr));
     let report = json(&output);
     assert_eq!((&report["passed"], &report["culprit"]), (&false.into(), &"weight".into()));

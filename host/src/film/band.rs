@@ -45,7 +45,7 @@ impl Band {
         }
         let mut taps = [Taps::EMPTY; 2];
         for splat in splats {
-            add_splat(rect, &mut half.light, splat, profile, &mut taps);
+            add_splat(rect, &mut half.light, splat, buffer.weight, profile, &mut taps);
         }
     }
 }
@@ -57,19 +57,19 @@ fn add_tile(rect: Rect, camera: &mut [[f64; 4]], buffer: &TileBuffer) {
         let to = (y - rect.y0) as usize * rect.width() + shared.x0 as usize;
         let added = &buffer.sums[from..from + shared.width()];
         for (sum, add) in camera[to..to + shared.width()].iter_mut().zip(added) {
-            *sum = [sum[0] + add[0], sum[1] + add[1], sum[2] + add[2], sum[3] + add[3]];
+            *sum = std::array::from_fn(|i| sum[i] + buffer.weight * add[i]);
         }
     }
 }
 
 #[inline]
-fn add_splat(rect: Rect, light: &mut [[f64; 3]], splat: &Splat, profile: &Profile, taps: &mut [Taps; 2]) {
+fn add_splat(rect: Rect, light: &mut [[f64; 3]], splat: &Splat, weight: f64, profile: &Profile, taps: &mut [Taps; 2]) {
     let [columns, rows] = taps;
     profile.taps(f64::from(splat.at[0]), columns);
     profile.taps(f64::from(splat.at[1]), rows);
     let (x, across) = columns.within(rect.x0, rect.x1);
     let (y, down) = rows.within(rect.y0, rect.y1);
-    let [r, g, b] = splat.value.map(f64::from);
+    let [r, g, b] = splat.value.map(|value| weight * f64::from(value));
     for (i, v) in down.iter().enumerate() {
         let start = (y + i) * rect.width() + x;
         for (sum, u) in light[start..start + across.len()].iter_mut().zip(across) {

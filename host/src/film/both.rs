@@ -70,6 +70,11 @@ impl Exposure for BothBuffers {
         self.0.clear();
         self.1.clear();
     }
+
+    fn weigh(&mut self, weight: f64) {
+        self.0.weigh(weight);
+        self.1.weigh(weight);
+    }
 }
 
 impl bidir_kernel::Film for BothBuffers {

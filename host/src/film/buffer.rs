@@ -21,6 +21,9 @@ pub trait Exposure: bidir_kernel::Film<Rivals = Together> {
 
     /// Forgets all samples of the unit; committed, it adds nothing.
     fn clear(&mut self);
+
+    /// Each sample of the unit counts so many times in the image.
+    fn weigh(&mut self, weight: f64);
 }
 
 /// A light walk's arrival.
@@ -44,6 +47,8 @@ pub struct TileBuffer {
     pub(super) splats: Vec<Vec<Splat>>,
     /// Samples ended.
     pub(super) samples: u64,
+    /// How often each of them counts.
+    pub(super) weight: f64,
     /// Contributions that were not finite, or came to no place on the film.
     pub(super) refused: u64,
     origin: [f64; 2],
@@ -63,6 +68,7 @@ impl TileBuffer {
             sums: Vec::new(),
             splats: vec![Vec::new(); layout.bands()],
             samples: 0,
+            weight: 1.0,
             refused: 0,
             origin: [f64::from(layout.crop.x), f64::from(layout.crop.y)],
             size: [f64::from(layout.crop.width), f64::from(layout.crop.height)],
@@ -85,7 +91,7 @@ impl TileBuffer {
         self.sums.clear();
         self.sums.resize(self.rect.width() * self.rect.height(), [0.0; 4]);
         self.splats.iter_mut().for_each(Vec::clear);
-        (self.samples, self.refused) = (0, 0);
+        (self.samples, self.refused, self.weight) = (0, 0, 1.0);
     }
 
     /// The bands that a splat at this row reaches.
@@ -133,6 +139,10 @@ impl Exposure for TileBuffer {
 
     fn clear(&mut self) {
         self.reset(self.unit);
+    }
+
+    fn weigh(&mut self, weight: f64) {
+        self.weight = weight;
     }
 }
 

@@ -34,8 +34,7 @@ impl Film {
     /// The picture: samples of both halves.
     /// A pixel that no sample reached is black.
     pub fn develop(&self) -> Image {
-        let samples = lock(&self.tally).samples;
-        let scale = self.scale((samples[0] + samples[1]) as f64);
+        let scale = self.scale(lock(&self.tally).weights.iter().sum());
         let mut image = Image::black(self.layout.crop.width, self.layout.crop.height);
         self.each(|index, column, row, [even, odd]| {
             let value = scale.value(&(even + odd), column, row);
@@ -46,8 +45,7 @@ impl Film {
 
     /// The pictures that samples of even and of odd number make on their own; independent unless the sampler ties samples together.
     pub fn halves(&self) -> [Image; 2] {
-        let samples = lock(&self.tally).samples;
-        let scales = samples.map(|n| self.scale(n as f64));
+        let scales = lock(&self.tally).weights.map(|n| self.scale(n));
         let mut images = [0, 1].map(|_| Image::black(self.layout.crop.width, self.layout.crop.height));
         self.each(|index, column, row, sums| {
             for ((image, scale), sum) in images.iter_mut().zip(&scales).zip(sums) {
@@ -65,7 +63,7 @@ impl Film {
     /// It is low while few pixels have seen the light that matters, like every estimate from the samples alone.
     pub fn noise(&self) -> Option<Noise> {
         let variances = self.variances()?;
-        let whole = self.scale(self.samples() as f64);
+        let whole = self.scale(lock(&self.tally).weights.iter().sum());
         let mut values = Vec::with_capacity(self.layout.pixels());
         self.each(|_, column, row, [even, odd]| values.push(whole.value(&(even + odd), column, row)));
         let sum: f64 = variances.iter().map(|v| v.iter().sum::<f64>() / 3.0).sum();
@@ -90,7 +88,7 @@ impl Film {
 
     /// Of each pixel, row by row; `None` before both halves have samples.
     fn variances(&self) -> Option<Vec<[f64; 3]>> {
-        let samples = lock(&self.tally).samples.map(|n| n as f64);
+        let samples = lock(&self.tally).weights;
         if samples.contains(&0.0) {
             return None;
         }

@@ -29,7 +29,7 @@
 //! ```
 //!
 //! A pixel is Σ h f / Σ h over camera samples plus Σ h f · pixels / N over splats, h the filter (normalised for splats), N the number
-//! of all samples, pixels those of the crop window. At the window's border the part of h outside never arrives: splats are divided
+//! of all samples, pixels those of the crop window; a sample that counts w times ([`Exposure::weigh`]) is w samples. At the window's border the part of h outside never arrives: splats are divided
 //! by h's mass inside.
 
 mod band;
@@ -98,8 +98,10 @@ struct Strip {
 /// How much is on the film.
 #[derive(Clone, Copy, Debug, Default)]
 struct Tally {
-    /// Samples of even and of odd number.
-    samples: [u64; 2],
+    /// Samples.
+    samples: u64,
+    /// Those of even and of odd number, each as often as it counts.
+    weights: [f64; 2],
     refused: u64,
 }
 
@@ -119,7 +121,7 @@ impl Film {
 
     /// Camera samples on the film, over all pixels. Like all that reads the film, it is exact while no thread holds a buffer.
     pub fn samples(&self) -> u64 {
-        lock(&self.tally).samples.iter().sum()
+        lock(&self.tally).samples
     }
 
     /// Contributions that were refused: not finite, or splats outside the window. Their samples still count.
@@ -130,7 +132,8 @@ impl Film {
     /// A buffer arrived in every band.
     fn recycle(&self, buffer: TileBuffer) {
         let mut tally = lock(&self.tally);
-        tally.samples[(buffer.unit.sample % 2) as usize] += buffer.samples;
+        tally.samples += buffer.samples;
+        tally.weights[(buffer.unit.sample % 2) as usize] += buffer.weight * buffer.samples as f64;
         tally.refused += buffer.refused;
         drop(tally);
         let index = buffer.unit.index;

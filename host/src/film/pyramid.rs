@@ -35,9 +35,9 @@ pub struct Pyramid {
 struct Sums {
     /// Layer by layer, row by row: weighted in 0 … 2, unweighted in 3 … 5.
     values: Vec<[f64; 6]>,
-    /// Per pixel.
-    samples: Vec<u32>,
-    total: u64,
+    /// Per pixel, each as often as it counts.
+    samples: Vec<f64>,
+    total: f64,
     refused: u64,
 }
 
@@ -49,6 +49,8 @@ pub struct PyramidBuffer {
     crop: [u32; 4],
     /// The pixel that the camera walk under way belongs to.
     pixel: u32,
+    /// How often each of its samples counts.
+    weight: f64,
     samples: Vec<u32>,
     arrivals: Vec<Arrival>,
     refused: u64,
@@ -82,7 +84,7 @@ impl Pyramid {
             };
             return Err(Error::new(thing, remedy));
         };
-        let sums = Sums { values: vec![[0.0; 6]; cells], samples: vec![0; pixels], total: 0, refused: 0 };
+        let sums = Sums { values: vec![[0.0; 6]; cells], samples: vec![0.0; pixels], total: 0.0, refused: 0 };
         let dispatch = Dispatch::new(layout.crop.width, layout.crop.height);
         Ok(Self { layout, longest, dispatch, order: Sequencer::new(), sums: Mutex::new(sums) })
     }
@@ -100,8 +102,8 @@ impl Pyramid {
         let sums = lock(&self.sums);
         for i in 0..pixels {
             let scale = match technique.join() {
-                Join::LensSplat | Join::LensHit => pixels as f64 / sums.total as f64,
-                Join::LightHit | Join::NextEvent | Join::Connection => 1.0 / f64::from(sums.samples[i]),
+                Join::LensSplat | Join::LensHit => pixels as f64 / sums.total,
+                Join::LightHit | Join::NextEvent | Join::Connection => 1.0 / sums.samples[i],
             };
             let scale = if scale.is_finite() { scale } else { 0.0 };
             let values = sums.values[layer as usize * pixels + i].map(|v| (v * scale) as f32);
@@ -124,7 +126,16 @@ impl Store for Pyramid {
         let unit = self.dispatch.claim(end)?;
         let crop = self.layout.crop;
         let crop = [crop.x, crop.y, crop.width, crop.height];
-        Some(PyramidBuffer { unit, longest: self.longest, crop, pixel: 0, samples: Vec::new(), arrivals: Vec::new(), refused: 0 })
+        Some(PyramidBuffer {
+            unit,
+            longest: self.longest,
+            crop,
+            pixel: 0,
+            weight: 1.0,
+            samples: Vec::new(),
+            arrivals: Vec::new(),
+            refused: 0,
+        })
     }
 
     fn commit(&self, buffer: PyramidBuffer) {
@@ -145,14 +156,15 @@ impl Store for Pyramid {
 
 impl Sums {
     fn add(&mut self, buffer: &PyramidBuffer, pixels: usize) {
-        self.total += buffer.samples.len() as u64;
+        let weight = buffer.weight;
+        self.total += weight * buffer.samples.len() as f64;
         self.refused += buffer.refused;
         for &pixel in &buffer.samples {
-            self.samples[pixel as usize] += 1;
+            self.samples[pixel as usize] += weight;
         }
         for arrival in &buffer.arrivals {
             let sum = &mut self.values[arrival.layer as usize * pixels + arrival.pixel as usize];
-            for (i, value) in arrival.value.map(f64::from).into_iter().enumerate() {
+            for (i, value) in arrival.value.map(|value| weight * f64::from(value)).into_iter().enumerate() {
                 sum[i] += value * f64::from(arrival.weight);
                 sum[i + 3] += value;
             }
@@ -192,6 +204,10 @@ impl Exposure for PyramidBuffer {
         self.samples.clear();
         self.arrivals.clear();
         self.refused = 0;
+    }
+
+    fn weigh(&mut self, weight: f64) {
+        self.weight = weight;
     }
 }
 
@@ -271,6 +287,30 @@ mod tests {
             assert!(weighted.pixels.iter().all(|p| (p[2] - value / (technique.s as f32 + 1.0)).abs() < 1e-5), "{technique:?}");
         }
         assert_eq!(pyramid.refused(), 0);
+    }
+
+    #[test]
+    fn a_sample_that_counts_more_is_that_many_samples() {
+        let pyramid = pyramid();
+        while let Some(mut buffer) = pyramid.claim(2) {
+            let sample = buffer.unit().sample;
+            buffer.weigh([1.0, 3.0][sample as usize]);
+            for (x, y) in pyramid.pixels(&buffer.unit()) {
+                let raster = Vec2::new(x as f32 + 0.5, y as f32 + 0.5);
+                let of =
+                    |s, t| Contribution { value: Spectrum::splat([2.0, 6.0][sample as usize]), weight: 0.5, technique: Technique { s, t } };
+                buffer.begin(raster);
+                buffer.add(of(1, 2));
+                buffer.splat(raster, of(2, 1));
+                buffer.end();
+            }
+            pyramid.commit(buffer);
+        }
+        for (s, t) in [(1, 2), (2, 1)] {
+            let [weighted, unweighted] = pyramid.develop(Technique { s, t });
+            let all = |image: &Image, value: f32| image.pixels.iter().all(|p| p.iter().all(|v| (v - value).abs() < 1e-6));
+            assert!(all(&weighted, 2.5) && all(&unweighted, 5.0), "{s} {t}");
+        }
     }
 
     #[test]

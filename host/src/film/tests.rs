@@ -215,6 +215,29 @@ fn the_halves_estimate_the_variance_without_bias() {
     assert_eq!(film(CROPS[0], Filter::Box).noise(), None);
 }
 
+/// Both camera samples and splats, and each half by itself.
+#[test]
+fn a_sample_that_counts_more_is_that_many_samples() {
+    let film = film(CROPS[0], Filter::Box);
+    expose(&film, 4, |buffer, pixel, n| {
+        buffer.weigh(if n < 2 { 1.0 } else { 3.0 });
+        let (raster, value) = (stratum(pixel, 0, 1), light([[2.0, 4.0, 6.0, 8.0][n as usize]; 3]));
+        buffer.begin(raster);
+        buffer.add(value);
+        buffer.splat(raster, value);
+        buffer.end();
+    });
+    let off = |image: &Image, mean: f32| largest_difference(image, |_, _| 2.0 * mean);
+    let [even, odd] = film.halves();
+    let differences = [
+        off(&film.develop(), (2.0 + 4.0 + 3.0 * (6.0 + 8.0)) / 8.0),
+        off(&even, (2.0 + 3.0 * 6.0) / 4.0),
+        off(&odd, (4.0 + 3.0 * 8.0) / 4.0),
+    ];
+    assert!(differences.iter().all(|&off| off < 1e-5), "{differences:?}");
+    assert_eq!(film.samples(), 4 * u64::from(CROPS[0].width * CROPS[0].height));
+}
+
 #[test]
 fn what_is_not_finite_is_refused_and_its_sample_still_counts() {
     let film = film(CROPS[1], FILTERS[2]);

@@ -27,6 +27,13 @@ const MARGIN: [f64; 2] = [0.02, 0.1];
 /// is so many times as good, or as good as the second where it has no light paths at all.
 const INSURANCE: [f64; 2] = [1.05, 1.25];
 
+/// A plan that leaves a kind of join out, and is noisier than a pilot says, is left for one that is so many times as good: of the same pixels, the
+/// pilot may have told too little of that one's noise as well.
+const DOUBT: f64 = 1.35;
+
+/// How many times as much a sample counts as one of the stage before, at most.
+const MOST_WORTH: f64 = 16.0;
+
 /// What costs of rationed light paths and connections are told from: a quarter of them.
 pub const RATION: f64 = 0.25;
 
@@ -103,18 +110,21 @@ pub struct Seen {
 }
 
 impl Seen {
+    /// What is told of it, in relMSE times samples per pixel.
+    fn told(&self, evidence: &Evidence, record: Option<&Record>) -> f64 {
+        evidence.errors(&[(self.stage, self.samples)], record)[0].max(f64::MIN_POSITIVE)
+    }
+
     /// How many times as noisy it is as is told; at least once.
-    pub fn times(&self, evidence: &Evidence, record: &Record) -> f64 {
-        let told = evidence.errors(&[(self.stage, self.samples)], Some(record))[0];
-        let times = self.error * self.samples / told.max(f64::MIN_POSITIVE);
+    pub fn times(&self, evidence: &Evidence, record: Option<&Record>) -> f64 {
+        let times = self.error * self.samples / self.told(evidence, record);
         if times.is_finite() { times.max(1.0) } else { 1.0 }
     }
 
     /// How much noisier it is than a pilot says, in relMSE times samples per pixel. That is of light too rare for the pilot; and what is so
     /// rare most plans make about as seldom as each other.
     fn beyond(&self, evidence: &Evidence, record: Option<&Record>) -> f64 {
-        let told = evidence.errors(&[(self.stage, self.samples)], record)[0];
-        let beyond = self.error * self.samples - self.before * told;
+        let beyond = self.error * self.samples - self.before * self.told(evidence, record);
         if beyond.is_finite() { beyond.max(0.0) } else { 0.0 }
     }
 }
@@ -161,11 +171,26 @@ pub struct Choice {
 }
 
 impl Choice {
+    /// Whether the plan, being so many times as noisy as was told, might be left for one that makes every kind of join.
+    pub fn is_doubted(&self, times: f64, open: &[Stage]) -> bool {
+        let full = self.candidates.iter().filter(|candidate| is_full(&candidate.stage, open)).map(Candidate::efficiency);
+        times * full.fold(0.0, f64::max) >= DOUBT * self.chosen.efficiency()
+    }
+
+    /// How much a sample of one stage should count against one of another: as much as it is less noisy, within bounds.
+    pub fn worth(&self, stage: &Stage, other: &Stage) -> f64 {
+        let error = |stage: &Stage| self.candidates.iter().find(|candidate| candidate.stage.techniques() == stage.techniques())?.error;
+        match error(other).zip(error(stage)) {
+            Some((other, own)) if own > 0.0 => (other / own).clamp(1.0 / MOST_WORTH, MOST_WORTH),
+            _ => 1.0,
+        }
+    }
+
     /// What would be chosen if samples cost so much.
     pub(super) fn at(&self, costs: &Costs) -> Candidate {
         let all: Vec<_> = self.candidates.iter().map(|candidate| Candidate { cost: costs.of(&candidate.stage), ..*candidate }).collect();
         let stays = |candidate: &Candidate| candidate.stage.techniques() == self.chosen.stage.techniques();
-        settled(&all, self.camera_paths + self.watched, stays, |_| false).unwrap_or(self.chosen)
+        settled(&all, margin(self.camera_paths + self.watched), stays, |_| false).unwrap_or(self.chosen)
     }
 }
 
@@ -214,7 +239,7 @@ pub fn broadest(open: &[Stage]) -> Option<Stage> {
 }
 
 /// The best one, or the best of those that stay, if chance might have put it behind, or the best of those that make every kind of join.
-fn settled(all: &[Candidate], samples: usize, stays: impl Fn(&Candidate) -> bool, full: impl Fn(&Candidate) -> bool) -> Option<Candidate> {
+fn settled(all: &[Candidate], margin: f64, stays: impl Fn(&Candidate) -> bool, full: impl Fn(&Candidate) -> bool) -> Option<Candidate> {
     let by_efficiency = |a: &&Candidate, b: &&Candidate| a.efficiency().total_cmp(&b.efficiency());
     let best = all.iter().max_by(by_efficiency)?;
     let near = |which: &dyn Fn(&Candidate) -> bool, margin: f64| {
@@ -222,7 +247,7 @@ fn settled(all: &[Candidate], samples: usize, stays: impl Fn(&Candidate) -> bool
         nearest.filter(|nearest| nearest.efficiency() * margin >= best.efficiency())
     };
     let insurance = if best.stage.techniques().light_walks() > 0.0 { INSURANCE[0] } else { INSURANCE[1] };
-    near(&stays, margin(samples)).or_else(|| near(&full, insurance)).or(Some(best)).copied()
+    near(&stays, margin).or_else(|| near(&full, insurance)).or(Some(best)).copied()
 }
 
 /// What a choice rests on.
@@ -241,13 +266,19 @@ pub struct Known<'a> {
 /// A plan for what is known: the stage under way, unless one of the open ones is clearly better.
 pub fn choose(open: &[Stage], known: &Known, until: Until, under_way: Option<&Stage>) -> Option<Choice> {
     let Known { evidence, costs, record, seen } = *known;
-    let beyond = seen.map_or(0.0, |seen| seen.beyond(evidence, record));
+    // Where some kind of join was not made, what was seen may be what that would take away: it is held against those alone that do without.
+    let (all_made, some_left_out) = (seen.filter(|seen| is_full(&seen.stage, open)), seen.filter(|seen| !is_full(&seen.stage, open)));
+    let beyond = all_made.map_or(0.0, |seen| seen.beyond(evidence, record));
+    let times = some_left_out.map_or(1.0, |seen| seen.times(evidence, record));
+    let doubted = |stage: &Stage| {
+        some_left_out.is_some_and(|seen| seen.stage.techniques() == stage.techniques() || record.is_none() && !is_full(stage, open))
+    };
     let look = |stages: &[Stage], record: Option<&Record>| -> Vec<Candidate> {
         let plans: Vec<_> = stages.iter().map(|stage| (*stage, until.samples(costs.of(stage)))).collect();
         let errors = evidence.errors(&plans, record);
         let candidate = |(stage, error): (&Stage, f64)| Candidate {
             stage: *stage,
-            error: error.is_finite().then_some(error.max(0.0) + beyond),
+            error: error.is_finite().then_some(error.max(0.0) * if doubted(stage) { times } else { 1.0 } + beyond),
             cost: costs.of(stage),
         };
         stages.iter().zip(errors).map(candidate).collect()
@@ -269,7 +300,8 @@ pub fn choose(open: &[Stage], known: &Known, until: Until, under_way: Option<&St
     let (camera_paths, watched) = (evidence.samples(), record.map_or(0, Record::samples));
     // Before the first sample it is said what a render would do that is not watched.
     let full = |candidate: &Candidate| under_way.is_some() && is_full(&candidate.stage, open);
-    let chosen = settled(&all, camera_paths + watched, stays, full)?;
+    let margin = if some_left_out.is_some() && record.is_none() { DOUBT } else { margin(camera_paths + watched) };
+    let chosen = settled(&all, margin, stays, full)?;
     let used: Vec<Join> = Join::ALL.into_iter().filter(|&join| chosen.stage.effort(join) > 0.0).collect();
     // Nobody watches for plans that are not open: the pilot alone knows them all.
     let stages: Vec<Stage> = std::iter::once(chosen.stage).chain(used.iter().map(|&join| chosen.stage.without(join))).collect();
@@ -375,12 +407,34 @@ mod tests {
         let (open, evidence) = (open(&ROOM, None), evidence([0.001, 0.0, 0.0, 0.999, 0.0]));
         let choose = |seen: Option<&Seen>| choose(&open, &Known { seen, ..known(&evidence) }, Until::Samples(32.0), None).unwrap();
         let first = choose(None);
-        let told = evidence.errors(&[(first.chosen.stage, 16.0)], None)[0];
-        let seen = |beyond| Seen { stage: first.chosen.stage, samples: 16.0, error: (told + beyond) / 16.0, before: 1.0 };
+        let full = broadest(&open).unwrap();
+        let told = evidence.errors(&[(full, 16.0)], None)[0];
+        let seen = |beyond| Seen { stage: full, samples: 16.0, error: (told + beyond) / 16.0, before: 1.0 };
         let (as_told, noisier) = (choose(Some(&seen(0.0))), choose(Some(&seen(1e3))));
         assert!(as_told.beyond < 1e-9 && as_told.chosen.stage == first.chosen.stage);
         assert!((noisier.beyond - 1e3).abs() < 1e-6, "{}", noisier.beyond);
         assert!(noisier.chosen.cost < first.chosen.cost, "{:?} {:?}", noisier.chosen, first.chosen);
+    }
+
+    /// Where a film is noisier than a pilot said of a plan that leaves some join out, that is held against such plans alone.
+    #[test]
+    fn a_path_tracer_that_is_noisier_than_told_is_left_for_a_plan_that_makes_every_join() {
+        let (open, evidence) = (open(&ROOM, None), evidence([0.2, 0.6, 0.1, 0.1, 0.0]));
+        let path = Stage::of(&Techniques::PATH);
+        let choose = |seen: Option<&Seen>| choose(&open, &Known { seen, ..known(&evidence) }, Until::Samples(32.0), Some(&path)).unwrap();
+        assert_eq!(choose(None).chosen.stage, path);
+        let told = evidence.errors(&[(path, 16.0)], None)[0];
+        let times = |times: f64| choose(Some(&Seen { stage: path, samples: 16.0, error: times * told / 16.0, before: 1.0 }));
+        assert_eq!([0.5, 1.0, 1.1].map(|noise| times(noise).chosen.stage), [path; 3]);
+        let noisy = times(20.0);
+        assert!([0.5, 1.1, 20.0].map(|times| choose(None).is_doubted(times, &open)) == [false, false, true]);
+        assert!(is_full(&noisy.chosen.stage, &open) && noisy.beyond == 0.0, "{:?}", noisy.chosen);
+        let error = |choice: &Choice, stage: &Stage| choice.candidates.iter().find(|other| other.stage == *stage).unwrap().error.unwrap();
+        assert!((error(&noisy, &path) / error(&choose(None), &path) - 20.0).abs() < 1e-6);
+        assert_eq!(error(&noisy, &noisy.chosen.stage), error(&choose(None), &noisy.chosen.stage));
+        // Each of its samples is worth as many of the path tracer's.
+        let worth = noisy.worth(&noisy.chosen.stage, &path);
+        assert!((worth - error(&noisy, &path) / error(&noisy, &noisy.chosen.stage)).abs() < 1e-9 && worth > 1.0 || worth == MOST_WORTH);
     }
 
     #[test]
@@ -392,7 +446,7 @@ mod tests {
         };
         let all = [candidate(1.0, 1.0), candidate(0.5, 1.05), candidate(0.0, 1.5)];
         let after = |samples: usize, under_way: f64| {
-            settled(&all, samples, |candidate| candidate.stage.lens_splat == under_way, |_| false).unwrap().stage.lens_splat
+            settled(&all, margin(samples), |candidate| candidate.stage.lens_splat == under_way, |_| false).unwrap().stage.lens_splat
         };
         // 5 % are chance to few camera paths, and are none to many; 50 % are none to either.
         assert_eq!([1.0, 0.5, 0.0, 2.0].map(|under_way| after(1_000, under_way)), [1.0, 0.5, 1.0, 1.0]);
@@ -411,7 +465,7 @@ mod tests {
         // After so many camera paths that little is left to chance.
         let best = |errors: [f64; 3]| {
             let all = [0, 1, 2].map(|i| Candidate { stage: open[i], ..candidate(0.0, 0.0, errors[i]) });
-            let chosen = settled(&all, 1_000_000, |_| false, |candidate| is_full(&candidate.stage, &open)).unwrap().stage;
+            let chosen = settled(&all, margin(1_000_000), |_| false, |candidate| is_full(&candidate.stage, &open)).unwrap().stage;
             open.iter().position(|stage| *stage == chosen)
         };
         assert_eq!([[1.0, 0.97, 2.0], [1.0, 0.9, 2.0], [1.0, 2.0, 0.9], [1.0, 2.0, 0.7]].map(best), [Some(0), Some(1), Some(0), Some(2)]);

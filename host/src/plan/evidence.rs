@@ -211,12 +211,12 @@ impl Evidence {
     pub fn record(&self, under_way: &Stage, plans: &[Stage]) -> Record {
         let importance = self.importance();
         let mut made = Vec::with_capacity(self.camera.len() + self.splats.len());
-        let mut rare = |stage: &Stage| Some((*stage, self.make(&Counts::of(stage), &importance, f64::INFINITY, &mut made)?.rare));
+        let mut rare = |stage: &Stage| Some((*stage, self.make(&Counts::of(stage), &importance, f64::INFINITY, &mut made)?.0));
         let plans: Vec<_> = plans.iter().filter_map(&mut rare).collect();
         Record::new(under_way, plans.into_iter(), importance)
     }
 
-    /// The relMSE of renders by these plans that have so many samples per pixel, times their number;
+    /// The relMSE, trimmed as [`Film::noise`](crate::film::Film::noise) has it, of renders by these plans that have so many samples per pixel, times their number;
     /// infinite where a plan cannot make what was seen, by the pilot or, if it has a record, the render.
     pub fn errors(&self, plans: &[(Stage, f64)], record: Option<&Record>) -> Vec<f64> {
         let importance = self.importance();
@@ -229,9 +229,9 @@ impl Evidence {
     /// `made` is room for what the plan makes of each contribution; `None` where there is one that it cannot make.
     fn error(&self, stage: &Stage, samples: f64, importance: &[f64], record: Option<&Record>, made: &mut Vec<Made>) -> Option<f64> {
         let counts = Counts::of(stage);
-        let recorded = record.and_then(|record| record.of(stage));
-        let told = self.make(&counts, importance, if recorded.is_some() { f64::INFINITY } else { ELUSIVE }, made)?;
-        let (rare, squares) = recorded.unwrap_or((told.rare, told.squares));
+        let recorded = record.and_then(|record| record.of(stage, samples));
+        let (rare, moments) = self.make(&counts, importance, if recorded.is_some() { f64::INFINITY } else { ELUSIVE }, made)?;
+        let (rare, squares) = recorded.unwrap_or_else(|| (rare, moments.squares(rare, f64::INFINITY, 1.0)));
         let (camera, splats) = made.split_at(self.camera.len());
         let mut spread = Spread::default();
         for (cell, paths) in self.places() {
@@ -242,25 +242,17 @@ impl Evidence {
         Some(spread.at(samples) + splats / self.samples().max(1) as f64 + squares)
     }
 
-    /// All contributions as a plan makes them; those that it makes less than `elusive` times as densely as the pilot are told by size.
-    fn make(&self, counts: &Counts, importance: &[f64], elusive: f64, made: &mut Vec<Made>) -> Option<Rarest> {
+    /// All contributions as a plan makes them; those that it makes less than `elusive` times as densely as the pilot are told by size, and
+    /// rare from that bin on.
+    fn make(&self, counts: &Counts, importance: &[f64], elusive: f64, made: &mut Vec<Made>) -> Option<(usize, Moments)> {
         let per_sample = 1.0 / self.samples().max(1) as f64;
         let mut moments = Moments::default();
         made.clear();
         for (cell, brought) in self.all() {
             made.push(counts.made(brought, importance[cell as usize], per_sample, elusive, &mut moments)?);
         }
-        let rare = moments.rarest(ENOUGH * per_sample);
-        Some(Rarest { rare, squares: moments.squares(rare) })
+        Some((moments.rarest(ENOUGH * per_sample), moments))
     }
-}
-
-/// What is rare in a plan.
-struct Rarest {
-    /// Its first bin.
-    rare: usize,
-    /// Its second moment.
-    squares: f64,
 }
 
 /// The counts of a plan.

@@ -48,6 +48,13 @@ pub struct Stage {
     pub lens_hit: f64,
     /// How techniques share a path.
     pub heuristic: Sharing,
+    /// How much each of its samples counts in the image, where another stage's counts more or less.
+    #[serde(default = "once")]
+    pub weight: f64,
+}
+
+fn once() -> f64 {
+    1.0
 }
 
 /// Names of the heuristics.
@@ -108,7 +115,7 @@ impl Stage {
     /// These techniques from the first sample on, by the balance heuristic.
     pub const fn of(techniques: &Techniques) -> Self {
         let Techniques { light_hit, next_event, connection, lens_splat, lens_hit } = *techniques;
-        Self { from: 0, light_hit, next_event, connection, lens_splat, lens_hit, heuristic: Sharing::Balance }
+        Self { from: 0, light_hit, next_event, connection, lens_splat, lens_hit, heuristic: Sharing::Balance, weight: 1.0 }
     }
 
     /// Its counts.
@@ -147,6 +154,9 @@ impl Stage {
         let counts = [("connection", self.connection), ("lens_splat", self.lens_splat), ("lens_hit", self.lens_hit)];
         if let Some((name, count)) = counts.into_iter().find(|(_, count)| !(0.0..=MOST).contains(count)) {
             return Some((format!("{name} is {count}"), "make it a number up to 1024"));
+        }
+        if !(self.weight > 0.0 && self.weight.is_finite()) {
+            return Some((format!("weight is {}", self.weight), "make it a number above 0"));
         }
         let shown = [("lens_splat", self.lens_splat), ("lens_hit", self.lens_hit)];
         let (name, count) = shown.into_iter().find(|(_, count)| *count != 0.0 && *count != walks)?;
@@ -230,6 +240,7 @@ mod tests {
             (with("\"light_hit\": 1", "\"light_hit\": 2"), "0 or 1"),
             (with("\"next_event\": 1", "\"next_event\": 0.5"), "whole number"),
             (with("\"connection\": 1", "\"connection\": -1"), "up to 1024"),
+            (with("\"light_hit\"", "\"weight\": 0, \"light_hit\""), "above 0"),
             (with("\"lens_splat\": 1", "\"lens_splat\": 0.5"), "make it that many, or 0"),
             (with("\"connection\": 1", "\"connection\": 2"), "make it that many, or 0"),
             (with("\"light_hit\"", "\"from\": 3, \"light_hit\""), "sample 0"),

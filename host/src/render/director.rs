@@ -22,6 +22,8 @@ use crate::{
 pub struct Leg {
     /// How samples are taken.
     pub strategy: Strategy,
+    /// How much each of them counts in the image.
+    pub weight: f64,
     /// The first sample of every pixel that is not taken so.
     pub end: u32,
     /// What of them the director wants to see.
@@ -45,7 +47,7 @@ pub struct Always;
 
 impl Director for Always {
     fn next(&mut self, _: &Scene, job: &Job, _: &Status, _: &dyn Told) -> Leg {
-        Leg { strategy: job.strategy, end: u32::MAX, watch: None }
+        Leg { strategy: job.strategy, weight: 1.0, end: u32::MAX, watch: None }
     }
 }
 
@@ -61,8 +63,8 @@ pub struct Given {
 impl Director for Given {
     fn next(&mut self, _: &Scene, job: &Job, status: &Status, _: &dyn Told) -> Leg {
         match self.plan.at(status.samples) {
-            Some((stage, end)) => Leg { strategy: stage.strategy(&self.integrator), end, watch: None },
-            None => Leg { strategy: job.strategy, end: u32::MAX, watch: None },
+            Some((stage, end)) => Leg { strategy: stage.strategy(&self.integrator), weight: stage.weight, end, watch: None },
+            None => Leg { strategy: job.strategy, weight: 1.0, end: u32::MAX, watch: None },
         }
     }
 }
@@ -120,6 +122,10 @@ pub struct Auto {
     watch: Option<Watch>,
     /// Whether they are.
     watching: bool,
+    /// What the first pilot took.
+    first: Duration,
+    /// Whether nobody has held it against the film yet, where nothing is watched.
+    doubtful: bool,
     /// What the render said of its error, while it had one stage.
     seen: Option<Seen>,
     /// How many times as noisy as told it was while it was watched.
@@ -144,6 +150,8 @@ impl Auto {
             held_against: Duration::MAX,
             watch: None,
             watching: false,
+            first: Duration::ZERO,
+            doubtful: false,
             seen: None,
             before: 1.0,
             elapsed: Duration::ZERO,
@@ -186,8 +194,20 @@ impl Auto {
             None => broadest(&self.open).unwrap_or(Stage::of(&job.strategy.techniques)),
         };
         if under_way.is_none_or(|stage| stage.techniques() != chosen.techniques()) {
-            self.plan.stages.push(Stage { from, ..chosen });
+            let weight = self.choice.as_ref().zip(under_way).map_or(1.0, |(choice, before)| before.weight * choice.worth(&chosen, &before));
+            self.plan.stages.push(Stage { from, weight, ..chosen });
         }
+    }
+
+    /// Whether the plan under way makes every kind of join.
+    fn is_full(&self) -> bool {
+        self.plan.last().is_some_and(|stage| is_full(stage, &self.open))
+    }
+
+    /// Whether what was seen of a plan that leaves some kind of join out may be a reason to leave it.
+    fn is_doubted(&self) -> bool {
+        let times = self.seen.as_ref().map(|seen| seen.times(self.pilot.evidence(), None));
+        self.choice.as_ref().zip(times).is_some_and(|(choice, times)| choice.is_doubted(times, &self.open))
     }
 
     /// Begins with a plan that can be watched, if there is one that is not much worse than what was chosen; where no light paths are worth
@@ -204,7 +224,7 @@ impl Auto {
                 *stage = Stage { from: stage.from, ..best.stage };
             }
         }
-        self.watching = full(stage) && self.open.len() > 1;
+        self.watching = full(stage);
     }
 
     /// What the next samples are watched for.
@@ -229,28 +249,29 @@ impl Auto {
         Some(watch)
     }
 
-    /// Holds what the render saw against the pilot. Of a film with several stages nobody knows which it owes its noise to; and where some
-    /// kind of join is not made, the noise may be what that would take away.
+    /// Holds what the render saw against the pilot. Of a film with several stages nobody knows which it owes its noise to.
     fn hold_against(&mut self, job: &Job, status: &Status, film: &dyn Told) {
         let start = Instant::now();
-        if let [stage] = *self.plan.stages.as_slice()
-            && is_full(&stage, &self.open)
-        {
+        if let [stage] = *self.plan.stages.as_slice() {
             if let Some(picture) = film.picture() {
                 self.pilot.see(&picture);
             }
             let error = if status.samples >= TELLING { film.error() } else { None };
             let mut seen = error.map(|error| Seen { stage, samples: f64::from(status.samples), error, before: self.before });
-            if let Some((seen, record)) = seen.as_mut().zip(self.watch.as_ref().filter(|_| self.watching).map(|watch| &watch.record)) {
+            if let Some((seen, watch)) = seen.as_mut().zip(self.watch.as_ref().filter(|_| self.watching)) {
                 // All that is on the film was watched, or about: what it is noisier than told is so whatever the plan.
-                seen.before = seen.times(self.pilot.evidence(), record);
+                seen.before = seen.times(self.pilot.evidence(), Some(&watch.record));
                 self.before = seen.before;
             }
             self.seen = seen;
+        }
+        let full = self.is_full();
+        if self.watching || self.plan.stages.len() == 1 && (full || self.is_doubted()) {
             self.choose(job, status.samples);
         }
-        self.watching = false;
-        self.held_against = status.elapsed.mul_f64(AGAIN);
+        // One that leaves some kind of join out was noisier than the pilot knew: it knew too little.
+        self.watching = !full && self.is_full();
+        self.held_against = if self.watching { status.elapsed + self.first.mul_f64(HELD_AGAINST) } else { status.elapsed.mul_f64(AGAIN) };
         self.elapsed += start.elapsed();
     }
 
@@ -274,18 +295,20 @@ impl Auto {
 
     /// Looks for the first time, for about as long as a render with this target should.
     pub fn begin(&mut self, scene: &Scene, job: &Job) {
-        let (time, pixels) = self.first(job.target);
+        let (time, pixels) = self.room(job.target);
         self.look(scene, job, time, pixels, 0);
+        self.first = self.elapsed;
         self.again = self.elapsed.mul_f64(2.0 / SHARE);
         self.held_against = self.elapsed.mul_f64(HELD_AGAINST);
         // What ends sooner would have nothing of it.
-        if self.lasts(job) > 2.0 * self.held_against.as_secs_f64() {
+        if self.open.len() > 1 && self.lasts(job) > 2.0 * self.held_against.as_secs_f64() {
             self.watch();
+            self.doubtful = !self.watching;
         }
     }
 
     /// How long the first pilot may take on each thread, and how many pixels it may look at.
-    fn first(&self, target: Target) -> (Duration, u64) {
+    fn room(&self, target: Target) -> (Duration, u64) {
         let some = |pixels: f64| pixels.clamp(FIRST[0], FIRST[1]) as u64;
         match target {
             Target::Samples(samples) => (Duration::MAX, some(SHARE * f64::from(samples) * self.pixels / PATHS_PER_PIXEL)),
@@ -300,7 +323,10 @@ impl Director for Auto {
         if self.plan.stages.is_empty() {
             self.begin(scene, job);
         } else if self.open.len() > 1 {
-            if status.elapsed >= self.held_against {
+            if self.doubtful && status.samples >= TELLING {
+                self.hold_against(job, status, film);
+                self.doubtful = false;
+            } else if status.elapsed >= self.held_against {
                 self.hold_against(job, status, film);
             }
             if status.elapsed >= self.again {
@@ -311,7 +337,7 @@ impl Director for Auto {
         }
         let stage = self.plan.last().copied().unwrap_or(Stage::of(&job.strategy.techniques));
         let watch = if self.watching && status.samples >= BRIGHT { self.watch_for(film) } else { None };
-        Leg { strategy: stage.strategy(&self.integrator), end: u32::MAX, watch }
+        Leg { strategy: stage.strategy(&self.integrator), weight: stage.weight, end: u32::MAX, watch }
     }
 
     fn watched(&mut self, watch: Watch) {

@@ -117,7 +117,7 @@ pub fn directed<S: Canvas>(
         let watch = &mut leg.watch;
         let end = pass_end(status.samples).min(last).min(leg.end).min(affordable(&status, job.target, pace));
         let before = (status.samples, status.elapsed);
-        let Some(claimed) = run(scene, film, job, end, Some(interrupt), watch, &mut status) else {
+        let Some(claimed) = run(scene, film, job, leg.weight, end, Some(interrupt), watch, &mut status) else {
             status.failed = true;
             return status;
         };
@@ -128,7 +128,7 @@ pub fn directed<S: Canvas>(
         }
         if claimed < end || interrupt.load(Ordering::Relaxed) {
             // Finish the sample that some pixels have already.
-            run(scene, film, job, claimed, None, watch, &mut status);
+            run(scene, film, job, leg.weight, claimed, None, watch, &mut status);
             status.samples = if status.fault.is_some() { status.samples } else { claimed };
             status.interrupted = true;
         } else {
@@ -169,6 +169,7 @@ fn run<S: Canvas>(
     scene: &Scene,
     film: &S,
     job: &Job,
+    weight: f64,
     end: u32,
     interrupt: Option<&AtomicBool>,
     watch: &mut Option<Watch>,
@@ -176,7 +177,7 @@ fn run<S: Canvas>(
 ) -> Option<u32> {
     let faulted = AtomicBool::new(false);
     let stop = Stop { interrupt, faulted: &faulted };
-    let share = Share { scene, film, job, end, stop, watch: watch.as_ref() };
+    let share = Share { scene, film, job, weight, end, stop, watch: watch.as_ref() };
     let workers: Vec<Option<Worked>> = std::thread::scope(|scope| {
         let workers: Vec<_> = (0..job.threads.max(1)).map(|_| scope.spawn(|| S::share(share))).collect();
         workers.into_iter().map(|worker| worker.join().ok()).collect()

@@ -136,6 +136,8 @@ pub struct Share<'a, S> {
     pub(super) scene: &'a Scene,
     pub(super) film: &'a S,
     pub(super) job: &'a Job,
+    /// How much each sample counts.
+    pub(super) weight: f64,
     pub(super) end: u32,
     pub(super) stop: Stop<'a>,
     /// What is watched for; not every canvas does.
@@ -190,13 +192,14 @@ impl<S: Store> Share<'_, S> {
     /// Takes every sample by `sample`.
     #[inline(always)]
     fn work<N: Source, P: Preset>(&self, view: &View<P>, mut sample: impl FnMut(&mut N::OfPixel<'_>, Vec2, &mut S::Buffer)) -> Worked {
-        let Self { film, job, end, stop, .. } = *self;
+        let Self { film, job, weight, end, stop, .. } = *self;
         let _guard = Guard(film);
         let clock = cpu_time::ThreadTime::now();
         let mut begun = 0;
         while !stop.asked() {
             let Some(mut buffer) = film.claim(end) else { break };
             let unit = buffer.unit();
+            buffer.weigh(weight);
             begun = begun.max(unit.sample + 1);
             let source = N::new(job.seed, unit.sample);
             view.sandbox().begin_tile(unit.index);

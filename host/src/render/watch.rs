@@ -138,7 +138,7 @@ mod tests {
     impl Director for Fixed {
         fn next(&mut self, _: &Scene, job: &Job, _: &Status, _: &dyn Told) -> Leg {
             let strategy = bidir_kernel::Strategy { techniques: self.stage.techniques(), ..job.strategy };
-            Leg { strategy, end: u32::MAX, watch: self.watch.as_ref().map(Watch::blank) }
+            Leg { strategy, weight: 1.0, end: u32::MAX, watch: self.watch.as_ref().map(Watch::blank) }
         }
 
         fn watched(&mut self, watch: Watch) {

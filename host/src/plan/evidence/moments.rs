@@ -1,5 +1,7 @@
 //! How noisy the contributions of a plan are, told by size: the largest may be so rare that the plan itself would not have been seen to
-//! make them.
+//! make them, or that they are left out of a trimmed error.
+
+use crate::image::trim::TRIM;
 
 /// Second moments of contributions, by how large each one is: a power of two each.
 #[derive(Clone, Debug)]
@@ -55,8 +57,42 @@ impl Moments {
         past.map_or(0, |bin| bin + 1)
     }
 
-    /// The second moments from that bin on.
-    pub(super) fn squares(&self, from: usize) -> f64 {
-        self.bins[from..].iter().map(|bin| bin.squares).sum()
+    /// The second moments from that bin on, as a render of so many samples per pixel has them when its error is trimmed: without the largest
+    /// contributions, if there are so few that these pixels are left out. Of numbers and squares, a sample has one in so many.
+    pub(super) fn squares(&self, from: usize, samples: f64, one_in: f64) -> f64 {
+        let mut left_out = TRIM * one_in / samples;
+        let kept = self.bins[from..].iter().rev().map(|bin| {
+            let out = left_out.min(bin.number);
+            left_out -= out;
+            if out < bin.number { bin.squares * (1.0 - out / bin.number) } else { 0.0 }
+        });
+        kept.sum::<f64>() / one_in
+    }
+
+    /// Takes in others.
+    pub(super) fn merge(&mut self, other: &Self) {
+        for (own, other) in self.bins.iter_mut().zip(&other.bins) {
+            own.number += other.number;
+            own.squares += other.squares;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_in_few_pixels_is_trimmed() {
+        let mut moments = Moments::default();
+        // In a thousand samples: one of 4096, two of 64, four of 1.
+        for (number, square) in [(1, 4096.0), (2, 64.0), (4, 1.0)] {
+            (0..number).for_each(|_| _ = moments.take(1.0, square, 1.0));
+        }
+        let of = |samples: f64| moments.squares(0, samples, 1000.0) * 1000.0;
+        // Of a sample per pixel, a thousandth of the pixels has the largest one; of two, half as much of it is left out.
+        let expected = [(1.0, 132.0), (2.0, 2048.0 + 132.0), (0.5, 68.0), (1e9, 4228.0)];
+        assert!(expected.iter().all(|&(samples, squares)| (of(samples) - squares).abs() < 1e-2), "{:?}", expected.map(|(n, _)| of(n)));
+        assert_eq!(moments.squares(0, f64::INFINITY, 1000.0), 4.228);
     }
 }

@@ -31,7 +31,7 @@ struct Rare {
     /// The first bin of what is rare, and the least square there.
     from: usize,
     least: f64,
-    squares: f64,
+    moments: Moments,
     /// Something was seen that it never makes.
     misses: bool,
 }
@@ -41,7 +41,7 @@ impl Record {
     pub(super) fn new(under_way: &Stage, plans: impl Iterator<Item = (Stage, usize)>, importance: Vec<f64>) -> Self {
         let rare = |(stage, from): (Stage, usize)| {
             let times = |join| if under_way.effort(join) > 0.0 { stage.effort(join) / under_way.effort(join) } else { 0.0 };
-            Rare { stage, counts: Join::ALL.map(times), from, least: Moments::least(from), squares: 0.0, misses: false }
+            Rare { stage, counts: Join::ALL.map(times), from, least: Moments::least(from), moments: Moments::default(), misses: false }
         };
         let plans: Vec<Rare> = plans.map(rare).collect();
         let least = |join| plans.iter().map(|plan| plan.least * plan.counts[join] * plan.counts[join]).fold(f64::INFINITY, f64::min);
@@ -62,7 +62,7 @@ impl Record {
             if density == 0.0 {
                 plan.misses = true;
             } else if !seen && square >= plan.least * density * density {
-                plan.squares += square / density;
+                plan.moments.take(density, square / (density * density), 1.0);
             }
         }
     }
@@ -79,7 +79,7 @@ impl Record {
 
     /// The same, with nothing seen.
     pub fn blank(&self) -> Self {
-        let blank = |plan: &Rare| Rare { squares: 0.0, misses: false, ..plan.clone() };
+        let blank = |plan: &Rare| Rare { moments: Moments::default(), misses: false, ..plan.clone() };
         Self { plans: self.plans.iter().map(blank).collect(), importance: self.importance.clone(), samples: 0, ..*self }
     }
 
@@ -91,7 +91,7 @@ impl Record {
     /// Takes in what was seen elsewhere by the same plan.
     pub fn merge(&mut self, other: &Self) {
         for (own, other) in self.plans.iter_mut().zip(&other.plans) {
-            own.squares += other.squares;
+            own.moments.merge(&other.moments);
             own.misses |= other.misses;
         }
         self.samples += other.samples;
@@ -99,14 +99,15 @@ impl Record {
 
     /// Whether that plan was watched for, or nothing was watched.
     pub fn knows(&self, stage: &Stage) -> bool {
-        self.samples == 0 || self.of(stage).is_some()
+        self.samples == 0 || self.of(stage, 1.0).is_some()
     }
 
-    /// The first bin of what is rare in a plan, and its second moment per camera path, infinite if the plan missed something;
-    /// `None` where nobody watched for that plan.
-    pub(super) fn of(&self, stage: &Stage) -> Option<(usize, f64)> {
+    /// The first bin of what is rare in a plan, and its second moment per camera path in a render of so many samples per pixel, infinite if
+    /// the plan missed something; `None` where nobody watched for that plan.
+    pub(super) fn of(&self, stage: &Stage, samples: f64) -> Option<(usize, f64)> {
         let plan = self.plans.iter().find(|plan| plan.stage.techniques() == stage.techniques()).filter(|_| self.samples > 0)?;
-        Some((plan.from, if plan.misses { f64::INFINITY } else { plan.squares / self.samples as f64 }))
+        let squares = plan.moments.squares(plan.from, samples, self.samples as f64);
+        Some((plan.from, if plan.misses { f64::INFINITY } else { squares }))
     }
 }
 
@@ -117,6 +118,9 @@ mod tests {
     use super::*;
 
     const ALL: Techniques = Techniques { light_hit: 1.0, next_event: 1.0, connection: 1.0, lens_splat: 1.0, lens_hit: 0.0 };
+
+    /// So many samples per pixel that nothing is trimmed.
+    const MANY: f64 = 1e30;
 
     /// Of one cell, whose squared errors count once; all squares of at least 1 are rare.
     fn record(under_way: Techniques, plans: &[Techniques]) -> Record {
@@ -132,7 +136,7 @@ mod tests {
     }
 
     fn squares(record: &Record, plan: Techniques) -> f64 {
-        record.of(&Stage::of(&plan)).expect("a plan that is watched for").1
+        record.of(&Stage::of(&plan), MANY).expect("a plan that is watched for").1
     }
 
     #[test]
@@ -178,7 +182,7 @@ mod tests {
     #[test]
     fn parts_of_two_threads_are_one() {
         let whole = record(ALL, &[ALL]);
-        assert!(whole.of(&Stage::of(&ALL)).is_none() && whole.knows(&Stage::of(&Techniques::PATH)));
+        assert!(whole.of(&Stage::of(&ALL), MANY).is_none() && whole.knows(&Stage::of(&Techniques::PATH)));
         let (mut a, mut b) = (whole.blank(), whole.blank());
         for (part, value) in [(&mut a, 2.0), (&mut b, 4.0)] {
             part.take(0, &brought(value, [0.5, 0.5, 0.0, 0.0, 0.0], &ALL));
