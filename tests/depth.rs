@@ -84,7 +84,7 @@ fn any_storage_brings_all_the_light() {
     for heuristic in [Heuristic::Balance, Heuristic::Power] {
         let strategy = subject.strategy(BDPT, heuristic);
         for stored in [0, 1, 2, 3, 8] {
-            let batch = |seed| with_storage(&subject, &strategy, stored, 512, 50 + u64::from(seed));
+            let batch = |seed| with_storage(&subject, &strategy, stored, 192, 50 + u64::from(seed));
             let found = Estimate::of(&(0..BATCHES).map(batch).collect::<Vec<_>>());
             assert_is(&format!("{stored} stored, {heuristic:?}"), &found, 1.0, 10, 0.02);
         }

@@ -40,6 +40,8 @@ fn weights_sum_to_one(name: &str, subject: &Subject, samples: u32, heuristic: He
     let comparisons = 2 * sets.len() * LONGEST as usize;
     let mut worst: (f64, String) = (0.0, String::new());
     for set in sets {
+        // Light walks seldom land on the lens: what rests on them alone takes longer, and is known less well.
+        let (samples, doubt) = if set & 1 == 0 { (samples, 0.05) } else { (samples / 4, 0.02) };
         let found = render(set, heuristic, samples, u64::from(set));
         for length in 1..=LONGEST {
             let (x, wanted) = (found.length(length), reference.length(length));
@@ -51,7 +53,7 @@ fn weights_sum_to_one(name: &str, subject: &Subject, samples: u32, heuristic: He
                 100.0 * apart.mean / wanted.mean,
                 100.0 * apart.error / wanted.mean
             );
-            assert!(wanted.mean > 0.0 && apart.error < 0.05 * wanted.mean, "too little to compare with: {what}");
+            assert!(wanted.mean > 0.0 && apart.error < doubt * wanted.mean, "too little to compare with: {what}");
             assert!(deviation < limit, "{what}");
             if deviation / limit > worst.0 {
                 worst = (deviation / limit, what);

@@ -114,10 +114,9 @@ pub fn directed<S: Canvas>(
         let mut leg = director.next(scene, job, &status, film);
         status.elapsed = start.elapsed();
         let job = &Job { strategy: leg.strategy, ..*job };
-        let watch = &mut leg.watch;
         let end = pass_end(status.samples).min(last).min(leg.end).min(affordable(&status, job.target, pace));
         let before = (status.samples, status.elapsed);
-        let Some(claimed) = run(scene, film, job, leg.weight, end, Some(interrupt), watch, &mut status) else {
+        let Some(claimed) = run(scene, film, job, &mut leg, end, Some(interrupt), &mut status) else {
             status.failed = true;
             return status;
         };
@@ -128,7 +127,7 @@ pub fn directed<S: Canvas>(
         }
         if claimed < end || interrupt.load(Ordering::Relaxed) {
             // Finish the sample that some pixels have already.
-            run(scene, film, job, leg.weight, claimed, None, watch, &mut status);
+            run(scene, film, job, &mut leg, claimed, None, &mut status);
             status.samples = if status.fault.is_some() { status.samples } else { claimed };
             status.interrupted = true;
         } else {
@@ -164,20 +163,19 @@ fn affordable(status: &Status, target: Target, pace: Option<f64>) -> u32 {
 }
 
 /// Renders every unit whose sample is below `end`; returns the samples of which a unit was begun. `None` if no thread could do any work.
-/// `watch` takes what the samples bring, if the canvas can tell.
+/// The leg's watch takes what the samples bring, if the canvas can tell.
 fn run<S: Canvas>(
     scene: &Scene,
     film: &S,
     job: &Job,
-    weight: f64,
+    leg: &mut Leg,
     end: u32,
     interrupt: Option<&AtomicBool>,
-    watch: &mut Option<Watch>,
     status: &mut Status,
 ) -> Option<u32> {
     let faulted = AtomicBool::new(false);
     let stop = Stop { interrupt, faulted: &faulted };
-    let share = Share { scene, film, job, weight, end, stop, watch: watch.as_ref() };
+    let share = Share { scene, film, job, weight: leg.weight, end, stop, watch: leg.watch.as_ref() };
     let workers: Vec<Option<Worked>> = std::thread::scope(|scope| {
         let workers: Vec<_> = (0..job.threads.max(1)).map(|_| scope.spawn(|| S::share(share))).collect();
         workers.into_iter().map(|worker| worker.join().ok()).collect()
@@ -190,7 +188,7 @@ fn run<S: Canvas>(
         status.rays += worked.rays;
         status.quarantine.merge(worked.quarantine);
         status.fault = status.fault.take().or(worked.fault);
-        if let Some((all, one)) = watch.as_mut().zip(worked.watch) {
+        if let Some((all, one)) = leg.watch.as_mut().zip(worked.watch) {
             all.record.merge(&one.record);
         }
     }
