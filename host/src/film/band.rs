@@ -22,12 +22,14 @@ pub struct Sums {
     pub camera: Vec<[f64; 4]>,
     /// Σ h f of splats; empty until one comes.
     pub light: Vec<[f64; 3]>,
+    /// Samples of the whole film, each as often as it counts.
+    pub weight: f64,
 }
 
 impl Band {
     /// Black.
     pub fn new(rect: Rect) -> Self {
-        let sums = || Sums { camera: vec![[0.0; 4]; rect.width() * rect.height()], light: Vec::new() };
+        let sums = || Sums { camera: vec![[0.0; 4]; rect.width() * rect.height()], light: Vec::new(), weight: 0.0 };
         Self { rect, halves: [sums(), sums()] }
     }
 
@@ -35,6 +37,7 @@ impl Band {
     pub fn add(&mut self, index: usize, buffer: &TileBuffer, profile: &Profile) {
         let rect = self.rect;
         let half = &mut self.halves[(buffer.unit.sample % 2) as usize];
+        half.weight += buffer.weight * buffer.samples as f64;
         add_tile(rect, &mut half.camera, buffer);
         let splats = &buffer.splats[index];
         if splats.is_empty() {

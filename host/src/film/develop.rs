@@ -34,7 +34,7 @@ impl Film {
     /// The picture: samples of both halves.
     /// A pixel that no sample reached is black.
     pub fn develop(&self) -> Image {
-        let scale = self.scale(lock(&self.tally).weights.iter().sum());
+        let scale = self.scale(self.weights().iter().sum());
         let mut image = Image::black(self.layout.crop.width, self.layout.crop.height);
         self.each(|index, column, row, [even, odd]| {
             let value = scale.value(&(even + odd), column, row);
@@ -45,7 +45,7 @@ impl Film {
 
     /// The pictures that samples of even and of odd number make on their own; independent unless the sampler ties samples together.
     pub fn halves(&self) -> [Image; 2] {
-        let scales = lock(&self.tally).weights.map(|n| self.scale(n));
+        let scales = self.weights().map(|n| self.scale(n));
         let mut images = [0, 1].map(|_| Image::black(self.layout.crop.width, self.layout.crop.height));
         self.each(|index, column, row, sums| {
             for ((image, scale), sum) in images.iter_mut().zip(&scales).zip(sums) {
@@ -60,10 +60,11 @@ impl Film {
     /// With m and n samples in the halves, whose pixel values are a and b, Var(a − b) = σ² (1/m + 1/n) and the picture's variance is
     /// σ² / (m + n); so (a − b)² m n / (m + n)² estimates it without bias: the sampler ties no sample of one half to one of the other.
     /// relMSE divides by the squared value of the picture, of which a pixel with a firefly knows little: its neighbours are asked too.
+    /// Where samples count more or less, m and n are how often they do, and the halves have about the same stages.
     /// It is low while few pixels have seen the light that matters, like every estimate from the samples alone.
     pub fn noise(&self) -> Option<Noise> {
         let variances = self.variances()?;
-        let whole = self.scale(lock(&self.tally).weights.iter().sum());
+        let whole = self.scale(self.weights().iter().sum());
         let mut values = Vec::with_capacity(self.layout.pixels());
         self.each(|_, column, row, [even, odd]| values.push(whole.value(&(even + odd), column, row)));
         let sum: f64 = variances.iter().map(|v| v.iter().sum::<f64>() / 3.0).sum();
@@ -88,7 +89,7 @@ impl Film {
 
     /// Of each pixel, row by row; `None` before both halves have samples.
     fn variances(&self) -> Option<Vec<[f64; 3]>> {
-        let samples = lock(&self.tally).weights;
+        let samples = self.weights();
         if samples.contains(&0.0) {
             return None;
         }
@@ -101,6 +102,11 @@ impl Film {
             variances.push([0, 1, 2].map(|i| (a[i] - b[i]) * (a[i] - b[i]) * share));
         });
         Some(variances)
+    }
+
+    /// Samples of even and of odd number, each as often as it counts; every strip was told of all, in the same order.
+    fn weights(&self) -> [f64; 2] {
+        self.bands.first().map_or([0.0; 2], |strip| lock(&strip.sums).halves.each_ref().map(|half| half.weight))
     }
 
     fn scale(&self, samples: f64) -> Scale {

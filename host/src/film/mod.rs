@@ -29,8 +29,8 @@
 //! ```
 //!
 //! A pixel is Σ h f / Σ h over camera samples plus Σ h f · pixels / N over splats, h the filter (normalised for splats), N the number
-//! of all samples, pixels those of the crop window; a sample that counts w times ([`Exposure::weigh`]) is w samples. At the window's border the part of h outside never arrives: splats are divided
-//! by h's mass inside.
+//! of all samples, pixels those of the crop window; one that counts w times ([`Exposure::weigh`]) is w samples. At the window's border
+//! the part of h outside never arrives: splats are divided by h's mass inside.
 
 mod band;
 mod both;
@@ -98,10 +98,7 @@ struct Strip {
 /// How much is on the film.
 #[derive(Clone, Copy, Debug, Default)]
 struct Tally {
-    /// Samples.
     samples: u64,
-    /// Those of even and of odd number, each as often as it counts.
-    weights: [f64; 2],
     refused: u64,
 }
 
@@ -133,7 +130,6 @@ impl Film {
     fn recycle(&self, buffer: TileBuffer) {
         let mut tally = lock(&self.tally);
         tally.samples += buffer.samples;
-        tally.weights[(buffer.unit.sample % 2) as usize] += buffer.weight * buffer.samples as f64;
         tally.refused += buffer.refused;
         drop(tally);
         let index = buffer.unit.index;

@@ -60,6 +60,7 @@ fn expose(film: &Film, end: u32, mut sample: impl FnMut(&mut TileBuffer, (u32, u
 fn random_sample(crop: Crop) -> impl Fn(&mut TileBuffer, (u32, u32), u32) + Copy {
     move |buffer, pixel, n| {
         let u = |dimension| hash(pixel, n, dimension);
+        buffer.weigh([1.0, 1.0 / 3.0][(n / 2 % 2) as usize]);
         buffer.begin(Vec2::new(pixel.0 as f32 + u(0), pixel.1 as f32 + u(1)));
         buffer.add(light([u(2), u(3), u(4)]));
         buffer.add(light([u(5) * 1e-3, 0.1, 1e4 * u(6)]));

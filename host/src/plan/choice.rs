@@ -27,7 +27,7 @@ const MARGIN: [f64; 2] = [0.02, 0.1];
 /// is so many times as good, or as good as the second where it has no light paths at all.
 const INSURANCE: [f64; 2] = [1.05, 1.25];
 
-/// A plan that leaves a kind of join out, and is noisier than a pilot says, is left for one that is so many times as good: of the same pixels, the
+/// A plan that leaves a kind of join out, and is noisier than a pilot says, is left for one that makes all and is so many times as good: the
 /// pilot may have told too little of that one's noise as well.
 const DOUBT: f64 = 1.35;
 
@@ -162,6 +162,10 @@ pub struct Choice {
     pub watched: usize,
     /// How much of every error, times samples per pixel, the render saw and the pilot did not.
     pub beyond: f64,
+    /// How many times as noisy as the pilot said a plan was seen to be that leaves some kind of join out.
+    pub times: f64,
+    /// How many times as good another plan would have had to be.
+    pub margin: f64,
     /// What each kind of join costs and saves.
     pub joins: Vec<Worth>,
     /// What calls of plugins take, module by module.
@@ -177,20 +181,23 @@ impl Choice {
         times * full.fold(0.0, f64::max) >= DOUBT * self.chosen.efficiency()
     }
 
-    /// How much a sample of one stage should count against one of another: as much as it is less noisy, within bounds.
-    pub fn worth(&self, stage: &Stage, other: &Stage) -> f64 {
-        let error = |stage: &Stage| self.candidates.iter().find(|candidate| candidate.stage.techniques() == stage.techniques())?.error;
-        match error(other).zip(error(stage)) {
-            Some((other, own)) if own > 0.0 => (other / own).clamp(1.0 / MOST_WORTH, MOST_WORTH),
-            _ => 1.0,
-        }
+    /// How much a sample of the chosen stage should count against one of another, of which there are so many per pixel: as much as it is
+    /// less noisy, within bounds.
+    pub fn worth(&self, other: &Stage, samples: f64, known: &Known) -> f64 {
+        let Known { evidence, record, seen, .. } = *known;
+        let times = seen.filter(|seen| seen.stage.techniques() == other.techniques()).map_or(1.0, |seen| seen.times(evidence, record));
+        let others = evidence.errors(&[(*other, samples)], record)[0] * times + self.beyond;
+        let own = self.chosen.error.filter(|own| *own > 0.0);
+        own.map_or(1.0, |own| (others / own).clamp(1.0 / MOST_WORTH, MOST_WORTH))
     }
 
     /// What would be chosen if samples cost so much.
     pub(super) fn at(&self, costs: &Costs) -> Candidate {
         let all: Vec<_> = self.candidates.iter().map(|candidate| Candidate { cost: costs.of(&candidate.stage), ..*candidate }).collect();
+        let open: Vec<_> = all.iter().map(|candidate| candidate.stage).collect();
         let stays = |candidate: &Candidate| candidate.stage.techniques() == self.chosen.stage.techniques();
-        settled(&all, margin(self.camera_paths + self.watched), stays, |_| false).unwrap_or(self.chosen)
+        let full = |candidate: &Candidate| self.watched > 0 && is_full(&candidate.stage, &open);
+        settled(&all, self.margin, stays, full).unwrap_or(self.chosen)
     }
 }
 
@@ -273,7 +280,7 @@ pub fn choose(open: &[Stage], known: &Known, until: Until, under_way: Option<&St
     let doubted = |stage: &Stage| {
         some_left_out.is_some_and(|seen| seen.stage.techniques() == stage.techniques() || record.is_none() && !is_full(stage, open))
     };
-    let look = |stages: &[Stage], record: Option<&Record>| -> Vec<Candidate> {
+    let look = |stages: &[Stage], record: Option<&Record>, doubted: &dyn Fn(&Stage) -> bool| -> Vec<Candidate> {
         let plans: Vec<_> = stages.iter().map(|stage| (*stage, until.samples(costs.of(stage)))).collect();
         let errors = evidence.errors(&plans, record);
         let candidate = |(stage, error): (&Stage, f64)| Candidate {
@@ -288,9 +295,9 @@ pub fn choose(open: &[Stage], known: &Known, until: Until, under_way: Option<&St
     }
     // Of plans that nobody watched for it is known that they were hopeless, and not how much of the rare they have.
     let watched = |stage: &&Stage| record.is_none_or(|record| record.knows(stage));
-    let mut all = look(&open.iter().filter(watched).copied().collect::<Vec<_>>(), record);
+    let mut all = look(&open.iter().filter(watched).copied().collect::<Vec<_>>(), record, &doubted);
     if let Some(stage) = under_way.filter(|stage| all.iter().all(|candidate| candidate.stage.techniques() != stage.techniques())) {
-        all.extend(look(&[*stage], record));
+        all.extend(look(&[*stage], record, &doubted));
     }
     all.sort_by(|a, b| b.efficiency().total_cmp(&a.efficiency()));
     let stays = |candidate: &Candidate| match under_way {
@@ -300,12 +307,13 @@ pub fn choose(open: &[Stage], known: &Known, until: Until, under_way: Option<&St
     let (camera_paths, watched) = (evidence.samples(), record.map_or(0, Record::samples));
     // Before the first sample it is said what a render would do that is not watched.
     let full = |candidate: &Candidate| under_way.is_some() && is_full(&candidate.stage, open);
-    let margin = if some_left_out.is_some() && record.is_none() { DOUBT } else { margin(camera_paths + watched) };
+    let in_doubt = times > 1.0 && record.is_none() && all.first().is_some_and(|best| is_full(&best.stage, open));
+    let margin = if in_doubt { DOUBT } else { margin(camera_paths + watched) };
     let chosen = settled(&all, margin, stays, full)?;
     let used: Vec<Join> = Join::ALL.into_iter().filter(|&join| chosen.stage.effort(join) > 0.0).collect();
     // Nobody watches for plans that are not open: the pilot alone knows them all.
     let stages: Vec<Stage> = std::iter::once(chosen.stage).chain(used.iter().map(|&join| chosen.stage.without(join))).collect();
-    let told = look(&stages, None);
+    let told = look(&stages, None, &|_| false);
     let joins = used.iter().zip(&told[1..]).map(|(&join, left)| Worth {
         join: super::joins::name(join),
         cost: (1.0 - left.cost / chosen.cost).max(0.0),
@@ -313,7 +321,19 @@ pub fn choose(open: &[Stage], known: &Known, until: Until, under_way: Option<&St
     });
     let joins = joins.collect();
     let (costs, candidates) = (*costs, all);
-    Some(Choice { chosen, candidates, costs, camera_paths, watched, beyond, joins, plugins: Vec::new(), without_plugins: None })
+    Some(Choice {
+        chosen,
+        candidates,
+        costs,
+        camera_paths,
+        watched,
+        beyond,
+        times,
+        margin,
+        joins,
+        plugins: Vec::new(),
+        without_plugins: None,
+    })
 }
 
 impl Stage {
@@ -432,9 +452,10 @@ mod tests {
         let error = |choice: &Choice, stage: &Stage| choice.candidates.iter().find(|other| other.stage == *stage).unwrap().error.unwrap();
         assert!((error(&noisy, &path) / error(&choose(None), &path) - 20.0).abs() < 1e-6);
         assert_eq!(error(&noisy, &noisy.chosen.stage), error(&choose(None), &noisy.chosen.stage));
-        // Each of its samples is worth as many of the path tracer's.
-        let worth = noisy.worth(&noisy.chosen.stage, &path);
-        assert!((worth - error(&noisy, &path) / error(&noisy, &noisy.chosen.stage)).abs() < 1e-9 && worth > 1.0 || worth == MOST_WORTH);
+        // Each of its samples is worth several of the path tracer's; of what misses something none are worth much.
+        let worth = |stage: &Stage| noisy.worth(stage, 16.0, &known(&evidence));
+        assert!((worth(&path) - told / noisy.chosen.error.unwrap()).abs() < 1e-9 && worth(&path) > 1.0, "{}", worth(&path));
+        assert_eq!(worth(&path.without(Join::NextEvent).without(Join::LightHit)), MOST_WORTH);
     }
 
     #[test]

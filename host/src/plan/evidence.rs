@@ -216,7 +216,7 @@ impl Evidence {
         Record::new(under_way, plans.into_iter(), importance)
     }
 
-    /// The relMSE, trimmed as [`Film::noise`](crate::film::Film::noise) has it, of renders by these plans that have so many samples per pixel, times their number;
+    /// The relMSE of renders by these plans that have so many samples per pixel, times their number;
     /// infinite where a plan cannot make what was seen, by the pilot or, if it has a record, the render.
     pub fn errors(&self, plans: &[(Stage, f64)], record: Option<&Record>) -> Vec<f64> {
         let importance = self.importance();

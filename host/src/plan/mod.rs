@@ -107,6 +107,8 @@ impl Named {
 
 /// The most light paths per camera path, and light points per vertex.
 const MOST: f64 = 1024.0;
+/// The most that a sample may count.
+const MOST_WEIGHT: f64 = 1e6;
 
 impl Stage {
     /// Every technique, once.
@@ -155,8 +157,8 @@ impl Stage {
         if let Some((name, count)) = counts.into_iter().find(|(_, count)| !(0.0..=MOST).contains(count)) {
             return Some((format!("{name} is {count}"), "make it a number up to 1024"));
         }
-        if !(self.weight > 0.0 && self.weight.is_finite()) {
-            return Some((format!("weight is {}", self.weight), "make it a number above 0"));
+        if !(1.0 / MOST_WEIGHT..=MOST_WEIGHT).contains(&self.weight) {
+            return Some((format!("weight is {}", self.weight), "make it a number from 1e-6 to 1e6"));
         }
         let shown = [("lens_splat", self.lens_splat), ("lens_hit", self.lens_hit)];
         let (name, count) = shown.into_iter().find(|(_, count)| *count != 0.0 && *count != walks)?;
@@ -240,7 +242,7 @@ mod tests {
             (with("\"light_hit\": 1", "\"light_hit\": 2"), "0 or 1"),
             (with("\"next_event\": 1", "\"next_event\": 0.5"), "whole number"),
             (with("\"connection\": 1", "\"connection\": -1"), "up to 1024"),
-            (with("\"light_hit\"", "\"weight\": 0, \"light_hit\""), "above 0"),
+            (with("\"light_hit\"", "\"weight\": 0, \"light_hit\""), "from 1e-6"),
             (with("\"lens_splat\": 1", "\"lens_splat\": 0.5"), "make it that many, or 0"),
             (with("\"connection\": 1", "\"connection\": 2"), "make it that many, or 0"),
             (with("\"light_hit\"", "\"from\": 3, \"light_hit\""), "sample 0"),

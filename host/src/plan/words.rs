@@ -67,7 +67,7 @@ fn against(choice: &Choice) -> String {
 
 /// The plan card: what was chosen, what it rests on, and what would change it.
 pub fn card(choice: &Choice) -> Vec<String> {
-    let Choice { chosen, candidates, costs, camera_paths, watched, beyond, joins, plugins, without_plugins } = choice;
+    let Choice { chosen, candidates, costs, camera_paths, watched, beyond, times, joins, plugins, without_plugins, .. } = choice;
     let mut lines = vec![
         format!("auto: {}", stage(&chosen.stage)),
         format!(
@@ -84,6 +84,9 @@ pub fn card(choice: &Choice) -> Vec<String> {
             time(costs.connections)
         ),
     ];
+    if *times > 1.0 {
+        lines.push(format!("the render was {times:.2} times as noisy as the pilot said; that is held against plans that leave a join out"));
+    }
     if *beyond > 0.0 {
         lines.push(format!("{beyond:.3} of that the render saw and the pilot did not; it is taken to be the same by every plan"));
     }

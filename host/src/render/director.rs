@@ -8,7 +8,7 @@ use super::{Job, Status, Target, Told, pilot::Pilot, watch::Watch};
 use crate::{
     plan::{
         Plan, Stage,
-        choice::{Choice, Known, Seen, Until, broadest, choose, is_full, open},
+        choice::{Choice, Costs, Known, Seen, Until, broadest, choose, is_full, open},
         effects::Effects,
     },
     scene::{
@@ -76,10 +76,10 @@ const SHARE: f64 = 0.015;
 const LOOKING: f64 = 0.9;
 
 /// Pixels that the first pilot looks at, at least and at most.
-const FIRST: [f64; 2] = [32.0, 1_024.0];
+const FIRST: [u64; 2] = [32, 1_024];
 
-/// About how many camera paths one of the pilot's pixels costs.
-const PATHS_PER_PIXEL: f64 = 150.0;
+/// Where the share is not used up by the fewest pixels, the pilot looks on if so many times as long as they took is left.
+const WORTH_MORE: f64 = 0.25;
 
 /// Samples per pixel that a render is taken to need where nobody knows.
 const UNKNOWN: f64 = 256.0;
@@ -182,8 +182,8 @@ impl Auto {
     fn choose(&mut self, job: &Job, from: u32) {
         let under_way = self.plan.last().copied();
         if self.open.len() > 1 {
-            let (evidence, costs, record) = (self.pilot.evidence(), &self.pilot.costs(), self.watch.as_ref().map(|watch| &watch.record));
-            let known = Known { evidence, costs, record, seen: self.seen.as_ref() };
+            let costs = self.pilot.costs();
+            let known = self.known(&costs);
             // Where nothing varies that was seen, there may be something that was not.
             self.choice = choose(&self.open, &known, self.until(job), under_way.as_ref())
                 .filter(|choice| choice.chosen.error.is_some_and(|error| error > 0.0))
@@ -194,9 +194,22 @@ impl Auto {
             None => broadest(&self.open).unwrap_or(Stage::of(&job.strategy.techniques)),
         };
         if under_way.is_none_or(|stage| stage.techniques() != chosen.techniques()) {
-            let weight = self.choice.as_ref().zip(under_way).map_or(1.0, |(choice, before)| before.weight * choice.worth(&chosen, &before));
+            let weight = under_way.map_or(1.0, |before| before.weight * self.worth(&before, from));
             self.plan.stages.push(Stage { from, weight, ..chosen });
+            // What was watched for was told of samples by the stage before.
+            self.watching = false;
         }
+    }
+
+    /// What a choice rests on, samples costing so much.
+    fn known<'a>(&'a self, costs: &'a Costs) -> Known<'a> {
+        Known { evidence: self.pilot.evidence(), costs, record: self.watch.as_ref().map(|watch| &watch.record), seen: self.seen.as_ref() }
+    }
+
+    /// How much a sample of what was chosen counts against one of the stage before, which ends with that sample.
+    fn worth(&self, before: &Stage, end: u32) -> f64 {
+        let samples = f64::from(end.saturating_sub(before.from).max(1));
+        self.choice.as_ref().map_or(1.0, |choice| choice.worth(before, samples, &self.known(&self.pilot.costs())))
     }
 
     /// Whether the plan under way makes every kind of join.
@@ -271,6 +284,9 @@ impl Auto {
         }
         // One that leaves some kind of join out was noisier than the pilot knew: it knew too little.
         self.watching = !full && self.is_full();
+        if self.watching {
+            self.watch = None;
+        }
         self.held_against = if self.watching { status.elapsed + self.first.mul_f64(HELD_AGAINST) } else { status.elapsed.mul_f64(AGAIN) };
         self.elapsed += start.elapsed();
     }
@@ -287,7 +303,7 @@ impl Auto {
     /// Seconds that the render is likely to take.
     fn lasts(&self, job: &Job) -> f64 {
         let per_pixel = match self.until(job) {
-            Until::Samples(samples) => samples * self.choice.as_ref().map_or(f64::INFINITY, |choice| choice.chosen.cost),
+            Until::Samples(samples) => samples * self.plan.last().map_or(0.0, |stage| self.pilot.costs().of(stage).max(0.0)),
             Until::Nanoseconds(time) => time,
         };
         1e-9 * per_pixel * self.pixels / job.threads.max(1) as f64
@@ -295,8 +311,18 @@ impl Auto {
 
     /// Looks for the first time, for about as long as a render with this target should.
     pub fn begin(&mut self, scene: &Scene, job: &Job) {
-        let (time, pixels) = self.room(job.target);
-        self.look(scene, job, time, pixels, 0);
+        match job.target {
+            Target::Time(time) => self.look(scene, job, time.mul_f64(SHARE), FIRST[1], 0),
+            Target::Samples(_) | Target::Error(_) => {
+                // A few pixels tell how long it will take.
+                self.look(scene, job, Duration::MAX, FIRST[0], 0);
+                let left = Duration::try_from_secs_f64(SHARE * self.lasts(job)).unwrap_or_default().saturating_sub(self.elapsed);
+                if self.open.len() > 1 && left > self.elapsed.mul_f64(WORTH_MORE) {
+                    self.plan.stages.clear();
+                    self.look(scene, job, left, FIRST[1] - FIRST[0], 0);
+                }
+            }
+        }
         self.first = self.elapsed;
         self.again = self.elapsed.mul_f64(2.0 / SHARE);
         self.held_against = self.elapsed.mul_f64(HELD_AGAINST);
@@ -306,16 +332,6 @@ impl Auto {
             self.doubtful = !self.watching;
         }
     }
-
-    /// How long the first pilot may take on each thread, and how many pixels it may look at.
-    fn room(&self, target: Target) -> (Duration, u64) {
-        let some = |pixels: f64| pixels.clamp(FIRST[0], FIRST[1]) as u64;
-        match target {
-            Target::Samples(samples) => (Duration::MAX, some(SHARE * f64::from(samples) * self.pixels / PATHS_PER_PIXEL)),
-            Target::Time(time) => (time.mul_f64(SHARE), FIRST[1] as u64),
-            Target::Error(_) => (Duration::MAX, 4 * FIRST[0] as u64),
-        }
-    }
 }
 
 impl Director for Auto {
@@ -323,13 +339,15 @@ impl Director for Auto {
         if self.plan.stages.is_empty() {
             self.begin(scene, job);
         } else if self.open.len() > 1 {
+            let stages = self.plan.stages.len();
             if self.doubtful && status.samples >= TELLING {
                 self.hold_against(job, status, film);
                 self.doubtful = false;
             } else if status.elapsed >= self.held_against {
                 self.hold_against(job, status, film);
             }
-            if status.elapsed >= self.again {
+            // Of a stage that has not begun there is nothing to say.
+            if self.plan.stages.len() == stages && status.elapsed >= self.again {
                 let time = status.elapsed.mul_f64(SHARE).saturating_sub(self.elapsed);
                 self.look(scene, job, time, u64::MAX / 2, status.samples);
                 self.again = status.elapsed.mul_f64(AGAIN);

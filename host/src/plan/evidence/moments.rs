@@ -57,8 +57,8 @@ impl Moments {
         past.map_or(0, |bin| bin + 1)
     }
 
-    /// The second moments from that bin on, as a render of so many samples per pixel has them when its error is trimmed: without the largest
-    /// contributions, if there are so few that these pixels are left out. Of numbers and squares, a sample has one in so many.
+    /// The second moments from that bin on, as a render of so many samples per pixel has them when its error is trimmed: without the
+    /// largest contributions, as many as fall on pixels that are left out. Of numbers and squares, a sample has one in so many.
     pub(super) fn squares(&self, from: usize, samples: f64, one_in: f64) -> f64 {
         let mut left_out = TRIM * one_in / samples;
         let kept = self.bins[from..].iter().rev().map(|bin| {
