@@ -181,14 +181,12 @@ impl Choice {
         times * full.fold(0.0, f64::max) >= DOUBT * self.chosen.efficiency()
     }
 
-    /// How much a sample of the chosen stage should count against one of another, of which there are so many per pixel: as much as it is
-    /// less noisy, within bounds.
-    pub fn worth(&self, other: &Stage, samples: f64, known: &Known) -> f64 {
-        let Known { evidence, record, seen, .. } = *known;
-        let times = seen.filter(|seen| seen.stage.techniques() == other.techniques()).map_or(1.0, |seen| seen.times(evidence, record));
-        let others = evidence.errors(&[(*other, samples)], record)[0] * times + self.beyond;
+    /// How much a sample of the chosen stage should count against one of another that was looked at: as much as it is less noisy, within
+    /// bounds. Both are told as at the end of the render: of a few samples nobody knows what is rare.
+    pub fn worth(&self, other: &Stage) -> f64 {
+        let Some(other) = self.candidates.iter().find(|candidate| candidate.stage.techniques() == other.techniques()) else { return 1.0 };
         let own = self.chosen.error.filter(|own| *own > 0.0);
-        own.map_or(1.0, |own| (others / own).clamp(1.0 / MOST_WORTH, MOST_WORTH))
+        own.map_or(1.0, |own| (other.error.unwrap_or(f64::INFINITY) / own).clamp(1.0 / MOST_WORTH, MOST_WORTH))
     }
 
     /// What would be chosen if samples cost so much.
@@ -453,9 +451,12 @@ mod tests {
         assert!((error(&noisy, &path) / error(&choose(None), &path) - 20.0).abs() < 1e-6);
         assert_eq!(error(&noisy, &noisy.chosen.stage), error(&choose(None), &noisy.chosen.stage));
         // Each of its samples is worth several of the path tracer's; of what misses something none are worth much.
-        let worth = |stage: &Stage| noisy.worth(stage, 16.0, &known(&evidence));
-        assert!((worth(&path) - told / noisy.chosen.error.unwrap()).abs() < 1e-9 && worth(&path) > 1.0, "{}", worth(&path));
-        assert_eq!(worth(&path.without(Join::NextEvent).without(Join::LightHit)), MOST_WORTH);
+        let worth = |path_error: Option<f64>| {
+            let of = |other: &Candidate| Candidate { error: if other.stage == path { path_error } else { other.error }, ..*other };
+            Choice { candidates: noisy.candidates.iter().map(of).collect(), ..noisy.clone() }.worth(&path)
+        };
+        let own = noisy.chosen.error.unwrap();
+        assert_eq!([Some(4.0 * own), Some(1e9 * own), None].map(worth), [4.0, MOST_WORTH, MOST_WORTH]);
     }
 
     #[test]

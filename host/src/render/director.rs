@@ -8,7 +8,7 @@ use super::{Job, Status, Target, Told, pilot::Pilot, watch::Watch};
 use crate::{
     plan::{
         Plan, Stage,
-        choice::{Choice, Costs, Known, Seen, Until, broadest, choose, is_full, open},
+        choice::{Choice, Known, Seen, Until, broadest, choose, is_full, open},
         effects::Effects,
     },
     scene::{
@@ -182,8 +182,8 @@ impl Auto {
     fn choose(&mut self, job: &Job, from: u32) {
         let under_way = self.plan.last().copied();
         if self.open.len() > 1 {
-            let costs = self.pilot.costs();
-            let known = self.known(&costs);
+            let (evidence, costs, record) = (self.pilot.evidence(), &self.pilot.costs(), self.watch.as_ref().map(|watch| &watch.record));
+            let known = Known { evidence, costs, record, seen: self.seen.as_ref() };
             // Where nothing varies that was seen, there may be something that was not.
             self.choice = choose(&self.open, &known, self.until(job), under_way.as_ref())
                 .filter(|choice| choice.chosen.error.is_some_and(|error| error > 0.0))
@@ -194,22 +194,11 @@ impl Auto {
             None => broadest(&self.open).unwrap_or(Stage::of(&job.strategy.techniques)),
         };
         if under_way.is_none_or(|stage| stage.techniques() != chosen.techniques()) {
-            let weight = under_way.map_or(1.0, |before| before.weight * self.worth(&before, from));
+            let weight = under_way.map_or(1.0, |before| before.weight * self.choice.as_ref().map_or(1.0, |choice| choice.worth(&before)));
             self.plan.stages.push(Stage { from, weight, ..chosen });
             // What was watched for was told of samples by the stage before.
             self.watching = false;
         }
-    }
-
-    /// What a choice rests on, samples costing so much.
-    fn known<'a>(&'a self, costs: &'a Costs) -> Known<'a> {
-        Known { evidence: self.pilot.evidence(), costs, record: self.watch.as_ref().map(|watch| &watch.record), seen: self.seen.as_ref() }
-    }
-
-    /// How much a sample of what was chosen counts against one of the stage before, which ends with that sample.
-    fn worth(&self, before: &Stage, end: u32) -> f64 {
-        let samples = f64::from(end.saturating_sub(before.from).max(1));
-        self.choice.as_ref().map_or(1.0, |choice| choice.worth(before, samples, &self.known(&self.pilot.costs())))
     }
 
     /// Whether the plan under way makes every kind of join.
