@@ -6,7 +6,7 @@
 //! short renders, all plans in turn, each held against a yardstick beside it, a still shorter render that is always the same: other work
 //! makes everything slower by half, for seconds at a time. All times are those of a machine where the yardstick is as quick as it ever was.
 //! The best fixed plan is chosen by one half of the seeds and scored by the other, both ways: chosen and scored by the same ones it would be
-//! the luckiest. Behind the measured figures of each plan stands what `auto`'s last pilot of the first seed predicted.
+//! the luckiest. Plans that are far behind after a few short renders, or after two whole ones, are not rendered on. Behind the measured figures of each plan stands what `auto`'s last pilot of the first seed predicted.
 
 use std::{
     cell::Cell,
@@ -58,8 +58,11 @@ const SHORT: u32 = 4;
 const TURNS: usize = 3;
 /// Samples per pixel of the yardstick.
 const YARD: u32 = 2;
-/// Plans that have less than this share of the best one's efficiency after a first look are not looked at again.
-const HOPELESS: f64 = 0.7;
+/// Plans that have less than this share of the best one's efficiency after a first look are not looked at again, and those that have less
+/// than that after a second one no further.
+const HOPELESS: [f64; 2] = [0.7, 0.85];
+/// Seeds that the second look is at.
+const SECOND: u64 = 2;
 /// The errors that plans are scored by.
 const ERRORS: [&str; 2] = ["relMSE", "trimmed relMSE"];
 /// Times that seeds are drawn anew for the intervals.
@@ -129,6 +132,9 @@ struct Entrant {
     /// CPU seconds of a sample, by all of them.
     time: f64,
     runs: Vec<Run>,
+    /// Whether it is still in the running, and whether `auto` chose it.
+    hopeful: bool,
+    chosen: bool,
 }
 
 /// A picture by the plan that `auto` chose.
@@ -209,7 +215,7 @@ impl Subject {
     /// Short renders of all these, in turn.
     fn pace(&self, entrants: &mut [Entrant]) {
         for turn in 0..TURNS {
-            for Entrant { stage, paces, .. } in entrants.iter_mut() {
+            for Entrant { stage, paces, .. } in entrants.iter_mut().filter(|entrant| entrant.hopeful || entrant.chosen) {
                 let before = self.yardstick();
                 let (_, seconds, samples) =
                     self.render(&mut Always, &self.job(stage, turn as u64, Target::Samples(SHORT)), &AtomicBool::new(false));
@@ -253,24 +259,29 @@ impl Subject {
             number += 1;
             !all[number..].iter().any(|later| same(stage, later))
         });
-        let mut entrants: Vec<Entrant> =
-            stages.into_iter().map(|stage| Entrant { stage, paces: Vec::new(), time: 0.0, runs: Vec::new() }).collect();
+        let mut entrants: Vec<Entrant> = stages
+            .into_iter()
+            .map(|stage| Entrant { stage, paces: Vec::new(), time: 0.0, runs: Vec::new(), hopeful: true, chosen: false })
+            .collect();
         self.pace(&mut entrants);
         for seed in [101, 102] {
             entrants.iter_mut().for_each(|entrant| entrant.runs.push(self.fixed(entrant, seed, seconds / 4.0)));
         }
-        let looks = |entrant: &Entrant| [0, 1].map(|by| entrant.efficiency(by, &[0, 1]));
-        let best = entrants.iter().map(looks).fold([0.0_f64; 2], |best, look| [0, 1].map(|by| best[by].max(look[by])));
+        drop_the_hopeless(&mut entrants, HOPELESS[0]);
         let auto: Vec<Chosen> = (0..seeds).map(|seed| self.auto(&entrants, seed, seconds)).collect();
-        let is_chosen = |stage: &Stage| auto.iter().any(|chosen| chosen.stages.iter().any(|other| same(other, stage)));
-        entrants.retain(|entrant| {
-            named[..2].contains(&entrant.stage)
-                || is_chosen(&entrant.stage)
-                || looks(entrant).iter().zip(best).any(|(look, best)| *look >= HOPELESS * best)
-        });
-        entrants.iter_mut().for_each(|entrant| entrant.runs.clear());
+        for entrant in &mut entrants {
+            entrant.runs.clear();
+            entrant.chosen = auto.iter().any(|chosen| chosen.stages.iter().any(|stage| same(stage, &entrant.stage)));
+            entrant.hopeful |= entrant.chosen || named[..2].contains(&entrant.stage);
+        }
+        entrants.retain(|entrant| entrant.hopeful);
         for seed in 0..seeds {
-            entrants.iter_mut().for_each(|entrant| entrant.runs.push(self.fixed(entrant, seed, seconds)));
+            if seed == SECOND {
+                drop_the_hopeless(&mut entrants, HOPELESS[1]);
+            }
+            for entrant in entrants.iter_mut().filter(|entrant| entrant.hopeful) {
+                entrant.runs.push(self.fixed(entrant, seed, seconds));
+            }
             self.pace(&mut entrants);
         }
         self.report(&entrants, &auto, &named)
@@ -389,7 +400,8 @@ impl Judged<'_> {
     /// `auto` over the fixed plan that is best by one half of the seeds, scored by the other; the geometric mean of both ways.
     fn over_best(&self, by: usize, halves: &[Vec<usize>; 2], draw: &mut dyn FnMut(&[usize]) -> Vec<usize>) -> f64 {
         let mut one = |chosen_by: &[usize], scored_by: &[usize]| {
-            let best = self.entrants.iter().max_by(|a, b| a.efficiency(by, chosen_by).total_cmp(&b.efficiency(by, chosen_by)));
+            let to_the_end = self.entrants.iter().filter(|entrant| entrant.hopeful);
+            let best = to_the_end.max_by(|a, b| a.efficiency(by, chosen_by).total_cmp(&b.efficiency(by, chosen_by)));
             let seeds = draw(scored_by);
             best.map_or(f64::NAN, |best| self.efficiency(by, &seeds) / best.efficiency(by, &seeds))
         };
@@ -408,9 +420,11 @@ impl Judged<'_> {
 }
 
 impl Entrant {
-    /// An error times samples, in the mean.
+    /// An error times samples, in the mean of those seeds that it was looked at with.
     fn error(&self, by: usize, seeds: &[usize]) -> f64 {
-        seeds.iter().map(|&seed| self.runs[seed].errors[by] * f64::from(self.runs[seed].samples)).sum::<f64>() / seeds.len() as f64
+        let products = seeds.iter().filter_map(|&seed| self.runs.get(seed)).map(|run| run.errors[by] * f64::from(run.samples));
+        let (sum, number) = products.fold((0.0, 0), |(sum, number), product| (sum + product, number + 1));
+        sum / f64::from(number)
     }
 
     fn efficiency(&self, by: usize, seeds: &[usize]) -> f64 {
@@ -422,6 +436,21 @@ impl Entrant {
 fn same(a: &Stage, b: &Stage) -> bool {
     let counts = |stage: &Stage| [stage.next_event, stage.connection, stage.lens_splat];
     counts(a) == counts(b) && (a.light_hit == b.light_hit || a.techniques().camera_walk() == b.techniques().camera_walk())
+}
+
+/// Those are hopeless that have less than that share of the efficiency of the best one, by either error.
+fn drop_the_hopeless(entrants: &mut [Entrant], share: f64) {
+    let looks: Vec<_> = entrants
+        .iter()
+        .map(|entrant| {
+            let all: Vec<usize> = (0..entrant.runs.len()).collect();
+            [0, 1].map(|by| entrant.efficiency(by, &all))
+        })
+        .collect();
+    let best = looks.iter().fold([0.0_f64; 2], |best, look| [0, 1].map(|by| best[by].max(look[by])));
+    for (entrant, look) in entrants.iter_mut().zip(looks) {
+        entrant.hopeful = look.iter().zip(best).any(|(look, best)| *look >= share * best);
+    }
 }
 
 /// How many samples take about so many seconds.

@@ -66,36 +66,48 @@ impl Rivals for Together {
     }
 }
 
-/// [`Rivals`] by kind of join, for whoever asks what other counts would have made of a path.
+/// [`Rivals`] by kind of join, for whoever asks what other counts would have made of a path: their sum, to the last bit as
+/// [`Together`] has it, and the part that each kind has in it, which what all are multiplied by does not change.
 #[derive(Clone, Copy, Debug)]
-pub struct ByJoin([Wide; Join::COUNT]);
+pub struct ByJoin {
+    all: Wide,
+    parts: [f64; Join::COUNT],
+}
 
 impl ByJoin {
     /// Those of one kind.
     pub fn of(&self, join: Join) -> f64 {
-        self.0[join as usize].get()
+        times(self.all.get(), self.parts[join as usize])
     }
 }
 
 impl Rivals for ByJoin {
-    const NONE: Self = Self([Wide::ZERO; Join::COUNT]);
+    const NONE: Self = Self { all: Wide::ZERO, parts: [0.0; Join::COUNT] };
 
-    fn with(mut self, join: Join, effort: f64) -> Self {
-        self.0[join as usize] = self.0[join as usize].plus(effort);
-        self
+    #[inline]
+    fn with(self, join: Join, effort: f64) -> Self {
+        let all = self.all.plus(effort);
+        let kept = self.all.part_of(all);
+        let mut parts = self.parts.map(|part| part * kept);
+        parts[join as usize] += Wide::ZERO.plus(effort).part_of(all);
+        Self { all, parts }
     }
 
-    fn and(mut self, others: Self) -> Self {
-        self.0.iter_mut().zip(others.0).for_each(|(own, other)| *own = own.plus(other.get()));
-        self
+    #[inline]
+    fn and(self, others: Self) -> Self {
+        let all = self.all.plus(others.all.get());
+        let (own, other) = (self.all.part_of(all), others.all.part_of(all));
+        Self { all, parts: core::array::from_fn(|join| self.parts[join] * own + others.parts[join] * other) }
     }
 
+    #[inline]
     fn times(self, x: f64) -> Self {
-        Self(self.0.map(|sum| sum.times(x)))
+        Self { all: self.all.times(x), ..self }
     }
 
+    #[inline]
     fn total(self) -> f64 {
-        self.0.into_iter().map(Wide::get).sum()
+        self.all.get()
     }
 }
 

@@ -70,6 +70,27 @@ impl Wide {
         Self::new(high.value + low, high.shift)
     }
 
+    /// This over a sum that it is a part of; 1 where it is infinite, 0 where both are 0.
+    #[inline]
+    pub(crate) fn part_of(self, sum: Self) -> f64 {
+        if self.value == 0.0 {
+            0.0
+        } else if self.shift == sum.shift && sum.value < f64::INFINITY {
+            self.value / sum.value
+        } else {
+            self.far_part_of(sum)
+        }
+    }
+
+    #[cold]
+    fn far_part_of(self, sum: Self) -> f64 {
+        if self.value == f64::INFINITY {
+            return 1.0;
+        }
+        // A part is never above its sum.
+        (0..(sum.shift - self.shift).clamp(0, 3)).fold(self.value / sum.value, |part, _| part * DOWN)
+    }
+
     /// The nearest f64: 0 or ∞ beyond its range.
     #[inline]
     pub(crate) fn get(self) -> f64 {
@@ -114,6 +135,19 @@ mod tests {
                 assert!((sum - exact).abs() <= 1e-15 * exact, "{sum} {exact}");
             }
         }
+    }
+
+    #[test]
+    fn parts_of_a_sum_add_up_however_far_apart_they_are() {
+        for exponent in (-900..=900).step_by(45) {
+            let wide = |exponent: i32| (0..9).fold(Wide::ZERO.plus(1.5), |x, _| x.times(libm::exp10(f64::from(exponent / 9))));
+            let (a, b) = (wide(exponent), wide(exponent / 3));
+            let sum = a.aligned(b);
+            let [a, b] = [a, b].map(|part| part.part_of(sum));
+            assert!((a + b - 1.0).abs() < 1e-12 && a >= 0.0 && b >= 0.0, "{exponent}: {a} {b}");
+        }
+        let infinite = Wide::ZERO.plus(f64::INFINITY);
+        assert_eq!([infinite, Wide::ZERO.plus(2.0), Wide::ZERO].map(|part| part.part_of(infinite)), [1.0, 0.0, 0.0]);
     }
 
     #[test]

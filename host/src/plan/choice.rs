@@ -20,12 +20,12 @@ const CONNECTIONS: [f64; 4] = [0.0, 0.25, 0.5, 1.0];
 /// The best of many predictions is the luckiest as well. So the plan under way, at first the best one without light paths, which is one of
 /// few, is left only for one that is better by more than chance often explains: by so much over the root of the pilot's camera paths, within
 /// these bounds.
-const LUCK: f64 = 6.0;
-const MARGIN: [f64; 2] = [0.02, 0.1];
+const LUCK: f64 = 15.0;
+const MARGIN: [f64; 2] = [0.02, 0.25];
 
 /// Light that is rarer than all that was seen is dearer to plans that leave a kind of join out: one that makes all is left only for one that
 /// is so many times as good, or as good as the second where it has no light paths at all.
-const INSURANCE: [f64; 2] = [1.05, 1.25];
+const INSURANCE: [f64; 2] = [1.02, 1.25];
 
 /// A plan that leaves a kind of join out, and is noisier than a pilot says, is left for one that makes all and is so many times as good: the
 /// pilot may have told too little of that one's noise as well.
@@ -266,11 +266,13 @@ pub struct Known<'a> {
     pub record: Option<&'a Record>,
     /// What the render said of its error.
     pub seen: Option<&'a Seen>,
+    /// How many times as good as the stage under way another plan has to be at least.
+    pub sure: f64,
 }
 
 /// A plan for what is known: the stage under way, unless one of the open ones is clearly better.
 pub fn choose(open: &[Stage], known: &Known, until: Until, under_way: Option<&Stage>) -> Option<Choice> {
-    let Known { evidence, costs, record, seen } = *known;
+    let Known { evidence, costs, record, seen, sure } = *known;
     // Where some kind of join was not made, what was seen may be what that would take away: it is held against those alone that do without.
     let (all_made, some_left_out) = (seen.filter(|seen| is_full(&seen.stage, open)), seen.filter(|seen| !is_full(&seen.stage, open)));
     let beyond = all_made.map_or(0.0, |seen| seen.beyond(evidence, record));
@@ -306,7 +308,7 @@ pub fn choose(open: &[Stage], known: &Known, until: Until, under_way: Option<&St
     // Before the first sample it is said what a render would do that is not watched.
     let full = |candidate: &Candidate| under_way.is_some() && is_full(&candidate.stage, open);
     let in_doubt = times > 1.0 && record.is_none() && all.first().is_some_and(|best| is_full(&best.stage, open));
-    let margin = if in_doubt { DOUBT } else { margin(camera_paths + watched) };
+    let margin = if in_doubt { DOUBT } else { margin(camera_paths + watched) }.max(sure);
     let chosen = settled(&all, margin, stays, full)?;
     let used: Vec<Join> = Join::ALL.into_iter().filter(|&join| chosen.stage.effort(join) > 0.0).collect();
     // Nobody watches for plans that are not open: the pilot alone knows them all.
@@ -404,7 +406,7 @@ mod tests {
     };
 
     fn known(evidence: &Evidence) -> Known<'_> {
-        Known { evidence, costs: &COSTS, record: None, seen: None }
+        Known { evidence, costs: &COSTS, record: None, seen: None, sure: 1.0 }
     }
 
     #[test]
@@ -490,6 +492,6 @@ mod tests {
             let chosen = settled(&all, margin(1_000_000), |_| false, |candidate| is_full(&candidate.stage, &open)).unwrap().stage;
             open.iter().position(|stage| *stage == chosen)
         };
-        assert_eq!([[1.0, 0.97, 2.0], [1.0, 0.9, 2.0], [1.0, 2.0, 0.9], [1.0, 2.0, 0.7]].map(best), [Some(0), Some(1), Some(0), Some(2)]);
+        assert_eq!([[1.0, 0.99, 2.0], [1.0, 0.9, 2.0], [1.0, 2.0, 0.9], [1.0, 2.0, 0.7]].map(best), [Some(0), Some(1), Some(0), Some(2)]);
     }
 }

@@ -231,7 +231,7 @@ impl Evidence {
         let counts = Counts::of(stage);
         let recorded = record.and_then(|record| record.of(stage, samples));
         let (rare, moments) = self.make(&counts, importance, if recorded.is_some() { f64::INFINITY } else { ELUSIVE }, made)?;
-        let (rare, squares) = recorded.unwrap_or_else(|| (rare, moments.squares(rare, f64::INFINITY, 1.0)));
+        let (rare, squares) = recorded.unwrap_or_else(|| (rare, moments.squares(rare, f64::INFINITY, 1.0, 0.0)));
         let (camera, splats) = made.split_at(self.camera.len());
         let mut spread = Spread::default();
         for (cell, paths) in self.places() {

@@ -70,7 +70,7 @@ impl Director for Given {
 }
 
 /// The share of a render's time that pilots may take.
-const SHARE: f64 = 0.015;
+const SHARE: f64 = 0.01;
 
 /// Of that, what they look for; the rest is for choosing.
 const LOOKING: f64 = 0.9;
@@ -85,8 +85,14 @@ const WORTH_MORE: f64 = 0.25;
 const UNKNOWN: f64 = 256.0;
 
 /// What the render itself saw is held against the pilot when it has taken so many times as long as the pilot, and then whenever it has
-/// taken `AGAIN` times as long. Until the first time it is watched.
-const HELD_AGAINST: f64 = 6.0;
+/// taken `AGAIN` times as long. Until the second time it is watched.
+const LOOKS: [f64; 2] = [5.0, 15.0];
+
+/// Before it was watched for so long, a plan is left only for one that is so many times as good.
+const SURE: f64 = 1.25;
+
+/// How many of the largest contributions that were watched are not taken for frequent: to be sure, and else.
+const SPARED: [f64; 2] = [4.0, 0.5];
 
 /// From so many samples per pixel on the film tells how bright the image is, and samples are watched.
 const BRIGHT: u32 = 2;
@@ -122,6 +128,9 @@ pub struct Auto {
     watch: Option<Watch>,
     /// Whether they are.
     watching: bool,
+    /// When that began, in time that the render took, and whether what they brought was held against the pilot once.
+    watched_from: Duration,
+    looked_once: bool,
     /// What the first pilot took.
     first: Duration,
     /// Whether nobody has held it against the film yet, where nothing is watched.
@@ -150,6 +159,8 @@ impl Auto {
             held_against: Duration::MAX,
             watch: None,
             watching: false,
+            watched_from: Duration::ZERO,
+            looked_once: false,
             first: Duration::ZERO,
             doubtful: false,
             seen: None,
@@ -180,15 +191,26 @@ impl Auto {
 
     /// Chooses by what was seen so far.
     fn choose(&mut self, job: &Job, from: u32) {
-        let under_way = self.plan.last().copied();
-        if self.open.len() > 1 {
-            let (evidence, costs, record) = (self.pilot.evidence(), &self.pilot.costs(), self.watch.as_ref().map(|watch| &watch.record));
-            let known = Known { evidence, costs, record, seen: self.seen.as_ref() };
-            // Where nothing varies that was seen, there may be something that was not.
-            self.choice = choose(&self.open, &known, self.until(job), under_way.as_ref())
-                .filter(|choice| choice.chosen.error.is_some_and(|error| error > 0.0))
-                .map(|choice| choice.with_plugins(&self.pilot.plugins()));
+        self.choice = self.found(job, 1.0);
+        self.go_on(job, from);
+    }
+
+    /// The best plan by what was seen so far; the one under way, unless another is so many times as good.
+    fn found(&self, job: &Job, sure: f64) -> Option<Choice> {
+        if self.open.len() == 1 {
+            return None;
         }
+        let (evidence, costs, record) = (self.pilot.evidence(), &self.pilot.costs(), self.watch.as_ref().map(|watch| &watch.record));
+        let known = Known { evidence, costs, record, seen: self.seen.as_ref(), sure };
+        // Where nothing varies that was seen, there may be something that was not.
+        choose(&self.open, &known, self.until(job), self.plan.last())
+            .filter(|choice| choice.chosen.error.is_some_and(|error| error > 0.0))
+            .map(|choice| choice.with_plugins(&self.pilot.plugins()))
+    }
+
+    /// Goes on as was chosen, or if there was nothing to choose by, with what has the most ways to make a path.
+    fn go_on(&mut self, job: &Job, from: u32) {
+        let under_way = self.plan.last().copied();
         let chosen = match &self.choice {
             Some(choice) => choice.chosen.stage,
             None => broadest(&self.open).unwrap_or(Stage::of(&job.strategy.techniques)),
@@ -198,6 +220,21 @@ impl Auto {
             self.plan.stages.push(Stage { from, weight, ..chosen });
             // What was watched for was told of samples by the stage before.
             self.watching = false;
+        }
+    }
+
+    /// Goes on as what was watched so far says, if it is clear: however few the largest contributions are taken to be.
+    fn go_on_if_sure(&mut self, job: &Job, from: u32) {
+        let mut found = SPARED.map(|spared| {
+            if let Some(watch) = &mut self.watch {
+                watch.record.spare(spared);
+            }
+            self.found(job, SURE)
+        });
+        let stages = found.each_ref().map(|choice| choice.as_ref().map(|choice| choice.chosen.stage.techniques()));
+        if stages[0] == stages[1] {
+            self.choice = found[1].take();
+            self.go_on(job, from);
         }
     }
 
@@ -246,6 +283,7 @@ impl Auto {
             }
         };
         watch.record.see(self.pilot.evidence());
+        watch.record.spare(SPARED[1]);
         let watch = watch.blank();
         self.elapsed += start.elapsed();
         Some(watch)
@@ -267,16 +305,27 @@ impl Auto {
             }
             self.seen = seen;
         }
-        let full = self.is_full();
-        if self.watching || self.plan.stages.len() == 1 && (full || self.is_doubted()) {
+        let (full, stages) = (self.is_full(), self.plan.stages.len());
+        let early = self.watching && !self.looked_once;
+        if early {
+            self.go_on_if_sure(job, status.samples);
+        } else if self.watching || stages == 1 && (full || self.is_doubted()) {
             self.choose(job, status.samples);
         }
-        // One that leaves some kind of join out was noisier than the pilot knew: it knew too little.
-        self.watching = !full && self.is_full();
-        if self.watching {
+        if early && self.plan.stages.len() == stages {
+            self.looked_once = true;
+            self.held_against = self.watched_from + self.first.mul_f64(LOOKS[1]);
+        } else if !full && self.is_full() {
+            // One that leaves some kind of join out was noisier than the pilot knew: it knew too little.
             self.watch = None;
+            self.watching = true;
+            self.watched_from = status.elapsed;
+            self.looked_once = false;
+            self.held_against = self.watched_from + self.first.mul_f64(LOOKS[0]);
+        } else {
+            self.watching = false;
+            self.held_against = status.elapsed.mul_f64(AGAIN);
         }
-        self.held_against = if self.watching { status.elapsed + self.first.mul_f64(HELD_AGAINST) } else { status.elapsed.mul_f64(AGAIN) };
         self.elapsed += start.elapsed();
     }
 
@@ -314,9 +363,9 @@ impl Auto {
         }
         self.first = self.elapsed;
         self.again = self.elapsed.mul_f64(2.0 / SHARE);
-        self.held_against = self.elapsed.mul_f64(HELD_AGAINST);
+        self.held_against = self.elapsed.mul_f64(LOOKS[0]);
         // What ends sooner would have nothing of it.
-        if self.open.len() > 1 && self.lasts(job) > 2.0 * self.held_against.as_secs_f64() {
+        if self.open.len() > 1 && self.lasts(job) > 2.0 * LOOKS[1] * self.first.as_secs_f64() {
             self.watch();
             self.doubtful = !self.watching;
         }

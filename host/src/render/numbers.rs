@@ -38,6 +38,9 @@ pub trait Source {
 
     /// Does a task with a preset that covers the scene and what else is `needed`.
     fn with_preset<T: Task>(scene: &Scene, needed: Effects, task: T) -> T::Output;
+
+    /// The same, with one that has light walks.
+    fn with_light_walks<T: Task>(scene: &Scene, needed: Effects, task: T) -> T::Output;
 }
 
 /// [`Numbers::Independent`].
@@ -59,6 +62,10 @@ impl Source for Apart {
 
     /// The one for any scene: these numbers are there to be compared with, and not compiled for every preset.
     fn with_preset<T: Task>(_: &Scene, _: Effects, task: T) -> T::Output {
+        task.run(Full {})
+    }
+
+    fn with_light_walks<T: Task>(_: &Scene, _: Effects, task: T) -> T::Output {
         task.run(Full {})
     }
 }
@@ -112,6 +119,10 @@ impl Source for Sobol {
 
     fn with_preset<T: Task>(scene: &Scene, needed: Effects, task: T) -> T::Output {
         scene.with_smallest_preset(needed, task)
+    }
+
+    fn with_light_walks<T: Task>(scene: &Scene, needed: Effects, task: T) -> T::Output {
+        scene.with_light_walks(needed, task)
     }
 }
 

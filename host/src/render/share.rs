@@ -185,8 +185,9 @@ impl<S: Store> Share<'_, S> {
         N::with_preset(self.scene, self.job.strategy.effects(), By::<_, N>(self, PhantomData))
     }
 
+    /// Only plans with light walks are watched.
     fn watched<N: Source>(self, watch: Watch) -> Worked {
-        N::with_preset(self.scene, self.job.strategy.effects(), Watching::<_, N>(self, watch, PhantomData))
+        N::with_light_walks(self.scene, self.job.strategy.effects(), Watching::<_, N>(self, watch, PhantomData))
     }
 
     /// Takes every sample by `sample`.

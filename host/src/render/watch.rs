@@ -1,39 +1,12 @@
 //! Samples that go onto the film and are watched on the way: what they bring tells plans apart.
 
-use bidir_kernel::{ByJoin, Contribution, Join, Rivals, Together, Vec2};
+use bidir_kernel::{ByJoin, Contribution, Rivals, Vec2};
 
 use super::pilot::brought;
 use crate::{
     film::Exposure,
     plan::evidence::{Grid, Record},
 };
-
-/// Weights as an ordinary film has them, to the last bit, and what they are made of.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Both {
-    weight: Together,
-    by_join: ByJoin,
-}
-
-impl Rivals for Both {
-    const NONE: Self = Self { weight: Together::NONE, by_join: ByJoin::NONE };
-
-    fn with(self, join: Join, effort: f64) -> Self {
-        Self { weight: self.weight.with(join, effort), by_join: self.by_join.with(join, effort) }
-    }
-
-    fn and(self, others: Self) -> Self {
-        Self { weight: self.weight.and(others.weight), by_join: self.by_join.and(others.by_join) }
-    }
-
-    fn times(self, x: f64) -> Self {
-        Self { weight: self.weight.times(x), by_join: self.by_join.times(x) }
-    }
-
-    fn total(self) -> f64 {
-        self.weight.total()
-    }
-}
 
 /// What is watched for, and where on the image.
 #[derive(Clone, Debug)]
@@ -68,10 +41,10 @@ impl<'a, B: Exposure> Watched<'a, B> {
 }
 
 impl<B: Exposure> bidir_kernel::Film for Watched<'_, B> {
-    type Rivals = Both;
+    type Rivals = ByJoin;
 
-    fn weighed(&mut self, own: f64, others: Both) {
-        self.weighed = (own, others.by_join);
+    fn weighed(&mut self, own: f64, others: ByJoin) {
+        self.weighed = (own, others);
     }
 
     fn add(&mut self, contribution: Contribution) {

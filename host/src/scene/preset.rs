@@ -142,4 +142,12 @@ impl Scene {
             _ => task.run(Full {}),
         }
     }
+
+    /// The same with one that has light walks, whether they are needed or not: for tasks that others need not be compiled for.
+    pub fn with_light_walks<T: Task>(&self, needed: Effects, task: T) -> T::Output {
+        match &self.plain {
+            Some(parts) if Plain::<true>::EFFECTS.covers(self.effects | needed) => task.run(Plain::<true>(parts)),
+            _ => task.run(Full {}),
+        }
+    }
 }

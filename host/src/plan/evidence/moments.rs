@@ -58,9 +58,10 @@ impl Moments {
     }
 
     /// The second moments from that bin on, as a render of so many samples per pixel has them when its error is trimmed: without the
-    /// largest contributions, as many as fall on pixels that are left out. Of numbers and squares, a sample has one in so many.
-    pub(super) fn squares(&self, from: usize, samples: f64, one_in: f64) -> f64 {
-        let mut left_out = TRIM * one_in / samples;
+    /// largest contributions, as many as fall on pixels that are left out, and so many more. Of numbers and squares, a sample has one in so
+    /// many.
+    pub(super) fn squares(&self, from: usize, samples: f64, one_in: f64, spared: f64) -> f64 {
+        let mut left_out = TRIM * one_in / samples + spared;
         let kept = self.bins[from..].iter().rev().map(|bin| {
             let out = left_out.min(bin.number);
             left_out -= out;
@@ -89,10 +90,10 @@ mod tests {
         for (number, square) in [(1, 4096.0), (2, 64.0), (4, 1.0)] {
             (0..number).for_each(|_| _ = moments.take(1.0, square, 1.0));
         }
-        let of = |samples: f64| moments.squares(0, samples, 1000.0) * 1000.0;
+        let of = |samples: f64| moments.squares(0, samples, 1000.0, 0.0) * 1000.0;
         // Of a sample per pixel, a thousandth of the pixels has the largest one; of two, half as much of it is left out.
         let expected = [(1.0, 132.0), (2.0, 2048.0 + 132.0), (0.5, 68.0), (1e9, 4228.0)];
         assert!(expected.iter().all(|&(samples, squares)| (of(samples) - squares).abs() < 1e-2), "{:?}", expected.map(|(n, _)| of(n)));
-        assert_eq!(moments.squares(0, f64::INFINITY, 1000.0), 4.228);
+        assert_eq!(moments.squares(0, f64::INFINITY, 1000.0, 0.0), 4.228);
     }
 }

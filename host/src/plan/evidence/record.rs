@@ -16,10 +16,20 @@ use crate::plan::Stage;
 #[derive(Clone, Debug)]
 pub struct Record {
     plans: Vec<Rare>,
-    /// The least square that is rare in any plan, for a path that was made by one kind of join alone.
-    least: [f64; Join::COUNT],
+    bounds: Arc<[Bounds]>,
     importance: Arc<[f64]>,
     samples: usize,
+    /// How many of the largest contributions are not counted, beside those on pixels that a trimmed error leaves out.
+    spared: f64,
+}
+
+/// From which size on contributions are rare in each of a few plans, that are looked at all at once: few are.
+#[derive(Clone, Copy, Debug)]
+struct Bounds {
+    /// How many times as often as the plan under way each makes a kind of join.
+    counts: [[f32; Self::PLANS]; Join::COUNT],
+    /// What is rare in it if its path is made with density 1; a little less, for what rounding takes.
+    least: [f32; Self::PLANS],
 }
 
 /// What a plan makes seldom.
@@ -36,6 +46,29 @@ struct Rare {
     misses: bool,
 }
 
+impl Bounds {
+    /// How many are looked at at once.
+    const PLANS: usize = 8;
+    /// f32 is off by less than this.
+    const ROUNDING: f64 = 1e-5;
+
+    fn of(plans: &[Rare]) -> Self {
+        let of = |value: &dyn Fn(&Rare) -> f64| std::array::from_fn(|at| plans.get(at).map_or(f32::MAX, |plan| value(plan) as f32));
+        let counts = std::array::from_fn(|join| of(&|plan| plan.counts[join]));
+        Self { counts, least: of(&|plan| plan.least.sqrt() * (1.0 - Self::ROUNDING)) }
+    }
+
+    /// Whether a contribution of that size is rare in any of the plans, or cannot be made by it.
+    #[inline(always)]
+    fn any(&self, size: f32, shares: &[f32; Join::COUNT]) -> bool {
+        let mut densities = [0.0_f32; Self::PLANS];
+        for (share, counts) in shares.iter().zip(&self.counts) {
+            densities.iter_mut().zip(counts).for_each(|(density, count)| *density += share * count);
+        }
+        densities.iter().zip(self.least).fold(false, |any, (density, least)| any | (size >= density * least))
+    }
+}
+
 impl Record {
     /// Nothing seen yet, of samples by the stage `under_way`; what is rare in each plan begins at that bin.
     pub(super) fn new(under_way: &Stage, plans: impl Iterator<Item = (Stage, usize)>, importance: Vec<f64>) -> Self {
@@ -44,20 +77,23 @@ impl Record {
             Rare { stage, counts: Join::ALL.map(times), from, least: Moments::least(from), moments: Moments::default(), misses: false }
         };
         let plans: Vec<Rare> = plans.map(rare).collect();
-        let least = |join| plans.iter().map(|plan| plan.least * plan.counts[join] * plan.counts[join]).fold(f64::INFINITY, f64::min);
-        Self { least: std::array::from_fn(least), plans, importance: importance.into(), samples: 0 }
+        Self {
+            bounds: plans.chunks(Bounds::PLANS).map(Bounds::of).collect(),
+            plans,
+            importance: importance.into(),
+            samples: 0,
+            spared: 0.0,
+        }
     }
 
     /// A contribution to a cell of the image.
     pub fn take(&mut self, cell: u32, brought: &Brought) {
         let square = brought.value * brought.value * self.importance[cell as usize];
-        // Whatever the plan, it makes a path at least as densely as by one of its kinds of join.
-        if brought.shares.iter().zip(self.least).any(|(share, least)| square < least * share * share) {
-            return;
-        }
+        let (size, shares) = (square.sqrt() as f32, brought.shares.map(|share| share as f32));
         // What the lens sees directly it sees with every sample.
         let seen = brought.technique.length() <= 1;
-        for plan in &mut self.plans {
+        let some = self.plans.chunks_mut(Bounds::PLANS).zip(self.bounds.iter()).filter(|(_, bounds)| bounds.any(size, &shares));
+        for plan in some.flat_map(|(plans, _)| plans) {
             let density: f64 = brought.shares.iter().zip(plan.counts).map(|(share, count)| share * count).sum();
             if density == 0.0 {
                 plan.misses = true;
@@ -72,6 +108,11 @@ impl Record {
         self.samples += 1;
     }
 
+    /// From now on so many of each plan's largest contributions are not counted: whether they are as frequent as they seem nobody knows.
+    pub fn spare(&mut self, number: f64) {
+        self.spared = number;
+    }
+
     /// Camera paths.
     pub fn samples(&self) -> usize {
         self.samples
@@ -80,7 +121,8 @@ impl Record {
     /// The same, with nothing seen.
     pub fn blank(&self) -> Self {
         let blank = |plan: &Rare| Rare { moments: Moments::default(), misses: false, ..plan.clone() };
-        Self { plans: self.plans.iter().map(blank).collect(), importance: self.importance.clone(), samples: 0, ..*self }
+        let (bounds, importance) = (self.bounds.clone(), self.importance.clone());
+        Self { plans: self.plans.iter().map(blank).collect(), bounds, importance, samples: 0, spared: self.spared }
     }
 
     /// From now on, the image is as bright as that.
@@ -106,7 +148,7 @@ impl Record {
     /// the plan missed something; `None` where nobody watched for that plan.
     pub(super) fn of(&self, stage: &Stage, samples: f64) -> Option<(usize, f64)> {
         let plan = self.plans.iter().find(|plan| plan.stage.techniques() == stage.techniques()).filter(|_| self.samples > 0)?;
-        let squares = plan.moments.squares(plan.from, samples, self.samples as f64);
+        let squares = plan.moments.squares(plan.from, samples, self.samples as f64, self.spared);
         Some((plan.from, if plan.misses { f64::INFINITY } else { squares }))
     }
 }
@@ -177,6 +219,44 @@ mod tests {
         record.take(0, &brought(0.5, [0.0, 0.0, 1.0, 0.0, 0.0], &ALL));
         record.end_sample();
         assert_eq!([ALL, Techniques::PATH].map(|plan| squares(&record, plan)), [0.0, f64::INFINITY]);
+    }
+
+    #[test]
+    fn a_look_at_all_plans_at_once_passes_over_nothing() {
+        let few = Techniques { connection: 0.25, lens_splat: 0.5, ..ALL };
+        let mut plans: Vec<_> = (0..9).map(|i| Techniques { connection: 0.1 * f64::from(i), ..ALL }).collect();
+        plans.push(Techniques::PATH);
+        let record = record(few, &plans);
+        assert_eq!(record.bounds.len(), 2);
+        for i in 0..4000_i32 {
+            let at = |k: i32| f64::from((i * (2 * k + 7) % 101) as u32);
+            let shares = [at(1) * at(2), at(3), at(4), at(5) * at(6), 0.0].map(|share| share / 4000.0);
+            let sum: f64 = shares.iter().sum::<f64>().max(1e-9);
+            let shares = shares.map(|share| share / sum);
+            let size = 0.02 * at(8);
+            for (plans, bounds) in record.plans.chunks(Bounds::PLANS).zip(record.bounds.iter()) {
+                let rare = plans.iter().any(|plan| {
+                    let density: f64 = shares.iter().zip(plan.counts).map(|(share, count)| share * count).sum();
+                    size * size >= plan.least * density * density
+                });
+                assert!(bounds.any(size as f32, &shares.map(|share| share as f32)) || !rare, "{i}: {size} {shares:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_largest_are_spared() {
+        let mut record = record(ALL, &[ALL]);
+        for value in [2.0, 4.0, 8.0] {
+            record.take(0, &brought(value, [0.5, 0.5, 0.0, 0.0, 0.0], &ALL));
+        }
+        record.end_sample();
+        let spared = |number: f64| {
+            let mut record = record.clone();
+            record.spare(number);
+            squares(&record, ALL)
+        };
+        assert_eq!([0.0, 0.5, 1.0, 2.5].map(spared), [84.0, 52.0, 20.0, 2.0]);
     }
 
     #[test]
