@@ -308,7 +308,10 @@ impl Auto {
         let (full, stages) = (self.is_full(), self.plan.stages.len());
         let early = self.watching && !self.looked_once;
         if early {
-            self.go_on_if_sure(job, status.samples);
+            // Of what nobody has seen yet there is nothing to be sure of.
+            if self.watch.as_ref().is_some_and(|watch| watch.record.samples() > 0) {
+                self.go_on_if_sure(job, status.samples);
+            }
         } else if self.watching || stages == 1 && (full || self.is_doubted()) {
             self.choose(job, status.samples);
         }

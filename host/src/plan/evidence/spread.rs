@@ -81,7 +81,7 @@ impl Spread {
 /// The least that twice the samples leave of an error beyond half of it.
 pub(super) const SLOPE: f64 = 0.75;
 /// Doublings for which an error may fall so.
-const FARTHEST: f64 = 6.0;
+const FARTHEST: f64 = 2.0;
 
 /// What a camera path and its light path would have brought.
 #[derive(Clone, Copy, Debug, Default)]
