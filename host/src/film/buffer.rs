@@ -51,8 +51,6 @@ pub struct TileBuffer {
     pub(super) weight: f64,
     /// Contributions that were not finite, or came to no place on the film.
     pub(super) refused: u64,
-    /// Whether such places are taken to begin again at the other end.
-    folds: bool,
     origin: [f64; 2],
     size: [f64; 2],
     band_height: i32,
@@ -72,7 +70,6 @@ impl TileBuffer {
             samples: 0,
             weight: 1.0,
             refused: 0,
-            folds: false,
             origin: [f64::from(layout.crop.x), f64::from(layout.crop.y)],
             size: [f64::from(layout.crop.width), f64::from(layout.crop.height)],
             band_height: layout.band_height as i32,
@@ -95,11 +92,6 @@ impl TileBuffer {
         self.sums.resize(self.rect.width() * self.rect.height(), [0.0; 4]);
         self.splats.iter_mut().for_each(Vec::clear);
         (self.samples, self.refused, self.weight) = (0, 0, 1.0);
-    }
-
-    /// From now on the film stands for a larger one, all of which comes to some place on it.
-    pub fn fold(&mut self) {
-        self.folds = true;
     }
 
     /// The bands that a splat at this row reaches.
@@ -172,8 +164,7 @@ impl bidir_kernel::Film for TileBuffer {
     #[inline]
     fn splat(&mut self, raster: Vec2, contribution: Contribution) {
         let value = contribution.value * contribution.weight;
-        let at = [f64::from(raster.x) - self.origin[0], f64::from(raster.y) - self.origin[1]];
-        let [x, y] = if self.folds { [0, 1].map(|axis| at[axis].rem_euclid(self.size[axis])) } else { at };
+        let (x, y) = (f64::from(raster.x) - self.origin[0], f64::from(raster.y) - self.origin[1]);
         if !(value.is_finite() && x >= 0.0 && x < self.size[0] && y >= 0.0 && y < self.size[1]) {
             self.refused += 1;
             return;

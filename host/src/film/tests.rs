@@ -116,18 +116,6 @@ fn splats_keep_a_flat_field_to_the_border() {
     }
 }
 
-#[test]
-fn what_falls_beside_a_film_that_folds_begins_again_at_the_other_end() {
-    let crop = Crop { x: 3, y: 5, width: 8, height: 6 };
-    let film = film(crop, FILTERS[0]);
-    let mut buffer = film.claim(u32::MAX).unwrap();
-    buffer.splat(Vec2::new(3.5, 11.5), light([1.0; 3]));
-    buffer.fold();
-    buffer.splat(Vec2::new(3.5 + 2.0 * 8.0, 5.5 - 6.0), light([1.0; 3]));
-    let landed: Vec<_> = buffer.splats.iter().flatten().map(|splat| splat.at).collect();
-    assert_eq!((buffer.refused, landed), (1, vec![[0.5, 0.5]]));
-}
-
 /// Camera samples and splats of the same field, a steep ramp: a shift by one pixel in either buffer shows in every pixel.
 #[test]
 fn splats_and_camera_samples_land_in_the_same_pixels() {

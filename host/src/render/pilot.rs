@@ -5,7 +5,7 @@ mod ways;
 
 use std::time::Duration;
 
-use bidir_kernel::{ByJoin, Contribution, Heuristic, Rivals, Sampler, Strategy, Techniques, Vec2, Walk, sample};
+use bidir_kernel::{ByJoin, Contribution, Heuristic, Rivals, Sampler, Strategy, Techniques, Together, Vec2, Walk, sample};
 use cpu_time::ThreadTime;
 
 use self::calls::Metering;
@@ -18,7 +18,7 @@ use super::{
     watch::Watch,
 };
 use crate::{
-    film::{Exposure, Film, Store},
+    film::{Exposure, Film, Store, TileBuffer},
     image::Image,
     plan::{
         Stage,
@@ -157,7 +157,7 @@ impl Pilot {
         let (mut camera_path, mut light_path) = (storage(&strategy), storage(&strategy));
         let grid = *self.evidence.grid();
         let mut kept = Kept { evidence: Evidence::new(grid), grid, weighed: (1.0, ByJoin::NONE) };
-        let mut timing = Timing { spent: Spent::default(), film: Film::new(&self.small).ok()? };
+        let mut timing = Timing { spent: Spent::default(), film: Film::new(&self.small).ok()?, crop: self.small.crop };
         let mut calls = Metering::of(view.sandbox());
         // The render's own numbers, of a seed that is not the render's.
         let sources: Vec<N> = (0..SAMPLES).map(|index| N::new(!job.seed, index as u32)).collect();
@@ -253,6 +253,8 @@ fn begun<N: Source>(source: &N, [x, y]: [u32; 2]) -> (N::OfPixel<'_>, Vec2) {
 struct Timing {
     spent: Spent,
     film: Film,
+    /// The film's.
+    crop: Crop,
 }
 
 /// Samples of these pixels, taken in one way.
@@ -285,12 +287,12 @@ impl<N: Source> Task for Timed<'_, N> {
         let view = self.view.with_preset(preset);
         let (mut camera_path, mut light_path) = (storage(&strategy), storage(&strategy));
         let Some(mut buffer) = timing.film.claim(u32::MAX) else { return 0.0 };
-        buffer.fold();
         let mut take = |places: &[[u32; 2]]| {
             for (&place, source) in places.iter().flat_map(|place| sources.iter().map(move |source| (place, source))) {
                 let (mut numbers, raster) = begun(source, place);
                 buffer.begin(raster);
-                sample(&view, &strategy, &mut numbers, raster, &mut camera_path, &mut light_path, &mut buffer);
+                let mut film = Within { buffer: &mut buffer, crop: timing.crop };
+                sample(&view, &strategy, &mut numbers, raster, &mut camera_path, &mut light_path, &mut film);
                 buffer.end();
             }
         };
@@ -300,5 +302,25 @@ impl<N: Source> Task for Timed<'_, N> {
         take(places);
         timing.film.commit(buffer);
         clock.elapsed().as_nanos() as f64
+    }
+}
+
+/// A buffer of the small film, for splats from all over the image.
+struct Within<'a> {
+    buffer: &'a mut TileBuffer,
+    crop: Crop,
+}
+
+impl bidir_kernel::Film for Within<'_> {
+    type Rivals = Together;
+
+    fn add(&mut self, contribution: Contribution) {
+        self.buffer.add(contribution);
+    }
+
+    fn splat(&mut self, raster: Vec2, contribution: Contribution) {
+        let fold = |at: f32, first: u32, length: u32| first as f32 + (at - first as f32).rem_euclid(length as f32);
+        let Crop { x, y, width, height } = self.crop;
+        self.buffer.splat(Vec2::new(fold(raster.x, x, width), fold(raster.y, y, height)), contribution);
     }
 }
