@@ -6,7 +6,8 @@
 //! short renders, all plans in turn, each held against a yardstick beside it, a still shorter render that is always the same: other work
 //! makes everything slower by half, for seconds at a time. All times are those of a machine where the yardstick is as quick as it ever was.
 //! The best fixed plan is chosen by one half of the seeds and scored by the other, both ways: chosen and scored by the same ones it would be
-//! the luckiest. Plans that are far behind after a few short renders, or after two whole ones, are not rendered on. Behind the measured figures of each plan stands what `auto`'s last pilot of the first seed predicted.
+//! the luckiest. Plans that are far behind after a few short renders, or after two whole ones, are not rendered on. Behind the measured
+//! figures of each plan stands what `auto`'s last pilot of the first seed predicted.
 
 use std::{
     cell::Cell,

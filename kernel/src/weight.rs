@@ -95,8 +95,10 @@ impl Rivals for ByJoin {
 
     #[inline]
     fn and(self, others: Self) -> Self {
-        let all = self.all.plus(others.all.get());
-        let (own, other) = (self.all.part_of(all), others.all.part_of(all));
+        // As far as f64 goes, like their sum: what is beyond is all there is, and its part is 1.
+        let other = others.all.get();
+        let all = self.all.plus(other);
+        let (own, other) = (self.all.part_of(all), Wide::ZERO.plus(other).part_of(all));
         Self { all, parts: core::array::from_fn(|join| self.parts[join] * own + others.parts[join] * other) }
     }
 
