@@ -56,3 +56,12 @@ fn sums_by_kind_of_join_are_those_that_one_kind_alone_would_have() {
         }
     }
 }
+
+#[test]
+fn rivals_beyond_all_numbers_are_of_the_kind_that_they_are() {
+    let far = (0..4).fold(ByJoin::NONE.with(Join::Connection, 1.0), |sum, _| sum.times(1e300));
+    let near = ByJoin::NONE.with(Join::NextEvent, 2.0);
+    let both = near.and(far);
+    assert_eq!([Join::NextEvent, Join::Connection, Join::LensSplat].map(|join| both.of(join)), [0.0, f64::INFINITY, 0.0]);
+    assert_eq!(both.total(), f64::INFINITY);
+}
